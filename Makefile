@@ -1,0 +1,44 @@
+# Every target sets up what it needs: a Python, .venv, the packages of requirements.lock.
+.DEFAULT_GOAL := help
+.PHONY: help walk test lint lock clean
+
+BIN := .venv/bin
+ARGS ?=
+# One file's tests stay in one worker, so that they share the simulations that they look at.
+PYTEST_ARGS ?= -n auto --maxprocesses 8 --dist loadfile
+
+help: ## Show this list
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+
+walk: .venv/.installed ## Simulate a walk and write its run folder; options go in ARGS="..."
+	@$(BIN)/humanwalk walk $(ARGS)
+
+test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
+	@DRAKE_ALLOW_NETWORK=meshcat OMP_NUM_THREADS=1 $(BIN)/pytest $(PYTEST_ARGS)
+
+lint: .venv/.installed ## Check style, types and the import rule
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy -p humanwalk
+	$(BIN)/lint-imports
+
+lock: .venv/.installed ## Choose the newest versions that pyproject.toml allows
+	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-header --no-annotate --upgrade \
+		--python-version 3.12 --group dev --output-file requirements.lock pyproject.toml
+
+clean: ## Remove .venv, caches and builds; keep runs
+	rm -rf .venv build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	find humanwalk tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.venv/.installed: pyproject.toml requirements.lock
+	@if ! $(BIN)/python -c 'import sys; sys.exit(sys.version_info < (3, 12))' 2>/dev/null; then \
+		python=$$(sh tools/find_python.sh) || exit 1; \
+		echo "humanwalk: making .venv with $$python (a few minutes, once)"; \
+		"$$python" -m venv --clear .venv || exit 1; \
+	fi
+	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(BIN)/python -m ensurepip >/dev/null
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps --editable .
+	@$(BIN)/python -m pip check --disable-pip-version-check >/dev/null || \
+		{ echo "humanwalk: requirements.lock does not fit pyproject.toml; run: make lock"; exit 1; }
+	@touch $@

@@ -1,0 +1,134 @@
+"""How the feet meet the ground: two interchangeable sets of collision shapes under each foot.
+
+The point set is six small spheres a foot, the hydroelastic set three compliant boxes. Both are in
+the model file, told apart by `POINT_SET` and `HYDRO_SET` in their names; a diagram keeps one set
+and filters the other out. Every shape's lowest points lie on the sole plane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from humanwalk.body.anatomy import REFERENCE_STATURE
+from humanwalk.body.skeleton import SIDES, Skeleton, Vector3
+
+POINT_SET = "_point_"
+"""Part of the name of every collision shape of the point-contact set."""
+HYDRO_SET = "_hydro_"
+"""Part of the name of every collision shape of the hydroelastic set."""
+
+FRICTION = 0.7
+"""Coulomb coefficient, static and dynamic (thesis 2.5)."""
+DISSIPATION = 1.0
+"""Hunt-Crossley dissipation [s/m] (our choice)."""
+RELAXATION_TIME = 0.02
+"""Relaxation time of the linear Kelvin-Voigt law that Drake's SAP solver uses [s] (our choice)."""
+POINT_STIFFNESS = 2.0e5
+"""Stiffness of one sphere [N/m] (our choice): quiet standing on twelve sinks 0.3 mm into rigid
+ground. The thesis' normal stiffness of 0 would sink at 1.9 m/s (erratum E8)."""
+HYDRO_MODULUS = 2.0e7
+"""Hydroelastic modulus of the soles [Pa] (our choice); below 1e7 Pa the body tips over."""
+HYDRO_RESOLUTION = 0.05
+"""Mesh resolution hint of the soles [m] (Drake ignores it for boxes)."""
+
+SPHERE_RADIUS = 0.012
+"""Radius of the contact spheres of the reference human [m]."""
+SOLE_THICKNESS = 0.02
+"""Height of the hydroelastic boxes of the reference human [m]."""
+
+
+@dataclass(frozen=True)
+class SolePart:
+    """The sole under one body of a foot of the reference human; x counts from the ankle joint.
+
+    Attributes:
+        name: Part of the foot.
+        body: Body name without the leg, e.g. `FootToes`.
+        x: Back and front end [m].
+        width: Breadth [m].
+        spheres_x: Where the two contact spheres are [m].
+        spheres_half_gap: Their distance from the middle of the foot [m].
+    """
+
+    name: str
+    body: str
+    x: tuple[float, float]
+    width: float
+    spheres_x: float
+    spheres_half_gap: float
+
+
+SOLE_PARTS = (
+    SolePart("heel", "Ankle", (-0.055, 0.06), 0.070, -0.043, 0.028),
+    SolePart("ball", "FootMiddle", (0.06, 0.149), 0.095, 0.130, 0.035),
+    SolePart("toe", "FootToes", (0.149, 0.211), 0.095, 0.189, 0.035),
+)
+
+
+@dataclass(frozen=True)
+class ContactSphere:
+    """A point-contact sphere: centre in the body frame p_BoS_B [m] and radius [m]."""
+
+    name: str
+    body: str
+    center: Vector3
+    radius: float
+
+
+@dataclass(frozen=True)
+class ContactBox:
+    """A compliant box: centre in the body frame p_BoS_B [m] and edges along x, y, z [m]."""
+
+    name: str
+    body: str
+    center: Vector3
+    size: Vector3
+
+
+def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
+    """The point set: medial and lateral spheres under heel, ball and toes of both feet."""
+    scale = skeleton.stature / REFERENCE_STATURE
+    radius = SPHERE_RADIUS * scale
+    spheres = []
+    for side in SIDES:
+        leftward = 1.0 if side == "Left" else -1.0
+        for part in SOLE_PARTS:
+            for place, outward in (("medial", -1.0), ("lateral", 1.0)):
+                y = leftward * outward * part.spheres_half_gap * scale
+                body = f"{side}Leg_{part.body}"
+                spheres.append(
+                    ContactSphere(
+                        name=f"{side}Leg{POINT_SET}{part.name}_{place}",
+                        body=body,
+                        center=_in_body(skeleton, side, body, (part.spheres_x * scale, y, radius)),
+                        radius=radius,
+                    )
+                )
+    return tuple(spheres)
+
+
+def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
+    """The hydroelastic set: one box under hind-foot, mid-foot and toes of both feet."""
+    scale = skeleton.stature / REFERENCE_STATURE
+    height = SOLE_THICKNESS * scale
+    boxes = []
+    for side in SIDES:
+        for part in SOLE_PARTS:
+            back, front = part.x[0] * scale, part.x[1] * scale
+            body = f"{side}Leg_{part.body}"
+            boxes.append(
+                ContactBox(
+                    name=f"{side}Leg{HYDRO_SET}{part.name}",
+                    body=body,
+                    center=_in_body(skeleton, side, body, ((back + front) / 2, 0.0, height / 2)),
+                    size=(front - back, part.width * scale, height),
+                )
+            )
+    return tuple(boxes)
+
+
+def _in_body(skeleton: Skeleton, side: str, body: str, p_SoleP: Vector3) -> Vector3:
+    """A point given from the sole below the ankle, seen from the body's origin."""
+    offset = skeleton.origins[body] - skeleton.origins[f"{side}Leg_Ankle"]
+    x, y, z = p_SoleP - offset
+    return (float(x), float(y), float(z - skeleton.sole_height))

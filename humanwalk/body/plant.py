@@ -1,0 +1,60 @@
+"""The human inside a Drake MultibodyPlant."""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from pydrake.multibody.parsing import PackageMap, Parser
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import ModelInstanceIndex
+
+from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
+from humanwalk.body.sdf import to_sdf
+from humanwalk.body.skeleton import MASS_RANGE_KG, STATURE_RANGE_M, Skeleton
+from humanwalk.quantity import quantity
+
+PACKAGE = "humanwalk"
+HUMAN_URL = "package://humanwalk/models/sdf/human.sdf"
+"""The reference human's model file, for a parser that `register_package` was called on."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Whose body walks: the reference human at another size."""
+
+    mass: float = quantity(REFERENCE_MASS, "kg", *MASS_RANGE_KG)
+    """Body mass; the thesis' subject has 70 kg (3.3.1)."""
+
+    stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
+    """Standing height; the thesis' subject has 1.75 m (3.3.1)."""
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The scaled skeleton."""
+        return human() if self == Subject() else human().scaled(self.mass, self.stature)
+
+
+def register_package(package_map: PackageMap) -> None:
+    """Make `package://humanwalk/...` name this package's files."""
+    package_map.Add(PACKAGE, str(Path(__file__).parent.parent))
+
+
+def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
+    """Parse the subject's model into a plant that is not finalised, strictly, and return its instance."""
+    parser = Parser(plant)
+    parser.SetStrictParsing()
+    register_package(parser.package_map())
+    if subject == Subject():
+        (instance,) = parser.AddModelsFromUrl(HUMAN_URL)
+    else:
+        (instance,) = parser.AddModelsFromString(to_sdf(subject.skeleton), "sdf")
+    return instance
+
+
+@cache
+def kinematics_plant(subject: Subject) -> MultibodyPlant:
+    """A finalised plant of the subject alone, without geometry roles, for kinematics and inertia in contexts."""
+    plant = MultibodyPlant(time_step=0.0)
+    add_human(plant, subject)
+    plant.Finalize()
+    return plant

@@ -1,0 +1,301 @@
+"""What a body is made of: segments, the joints between them, and the tree they form.
+
+Frames: every segment's frame sits at its inboard joint and is parallel to the world frame W (x
+forward, y left, z up) in neutral standing, where all joint angles are zero and both soles rest on
+z = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from humanwalk.body.shapes import Shape
+from humanwalk.quantity import require_in_range
+
+Side = Literal["Right", "Left"]
+SIDES: tuple[Side, Side] = ("Right", "Left")
+Vector3 = tuple[float, float, float]
+
+MASS_RANGE_KG = (30.0, 200.0)
+STATURE_RANGE_M = (1.2, 2.2)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One rigid body.
+
+    Attributes:
+        name: The thesis' name of the body, e.g. `RightLeg_Tibia`.
+        shape: The uniform solid that gives the inertia, centred on the centre of mass.
+        mass: Mass [kg].
+        com: Centre of mass in the body frame, p_BoBcm_B [m].
+        source: Where shape and mass come from.
+    """
+
+    name: str
+    shape: Shape
+    mass: float
+    com: Vector3
+    source: str
+
+    @property
+    def inertia(self) -> npt.NDArray[np.float64]:
+        """Principal moments about the centre of mass, I_BBcm_B [kg m2], shape (3,)."""
+        return self.shape.inertia(self.mass)
+
+    def mirrored(self) -> Segment:
+        """The left twin of a right segment (reflected in the plane y = 0)."""
+        x, y, z = self.com
+        return replace(self, name=_left_name(self.name), com=(x, -y + 0.0, z))
+
+    def scaled(self, length: float, mass: float) -> Segment:
+        """This segment with lengths and mass multiplied by two factors."""
+        return replace(
+            self,
+            shape=self.shape.scaled(length),
+            mass=self.mass * mass,
+            com=_times(self.com, length),
+        )
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One actuated revolute joint.
+
+    Attributes:
+        name: The thesis' name of the motion, e.g. `RightLegTibiaMotion`.
+        motion: What a positive angle is called, e.g. "knee flexion".
+        parent: Name of the segment inboard of the joint.
+        child: Name of the segment outboard; its frame's origin lies on the joint axis.
+        axis: Unit vector of the axis, in parent and child frame alike.
+        origin: Origin of the child frame in the parent frame, p_PC [m].
+        range_rad: Lower and upper limit of the angle [rad].
+        range_source: Where the range comes from.
+        effort_limit_N_m: Greatest actuator torque [N m].
+        effort_source: Where the torque limit comes from.
+        rotor_inertia: Reflected inertia of the actuator, gear ratio 1 [kg m2].
+        damping: Viscous damping of the joint [N m s/rad].
+    """
+
+    name: str
+    motion: str
+    parent: str
+    child: str
+    axis: Vector3
+    origin: Vector3
+    range_rad: tuple[float, float]
+    range_source: str
+    effort_limit_N_m: float
+    effort_source: str
+    rotor_inertia: float
+    damping: float
+
+    def mirrored(self) -> Joint:
+        """The left twin of a right joint, positive in the same anatomical sense.
+
+        A rotation axis is a pseudovector: reflected in y = 0 it keeps y and turns x and z round.
+        """
+        x, y, z = self.origin
+        ax, ay, az = self.axis
+        return replace(
+            self,
+            name=_left_name(self.name),
+            parent=_left_name(self.parent),
+            child=_left_name(self.child),
+            axis=(-ax + 0.0, ay, -az + 0.0),
+            origin=(x, -y + 0.0, z),
+        )
+
+    def scaled(self, length: float, mass: float) -> Joint:
+        """This joint on a body scaled by two factors.
+
+        Torques grow with m L, times with sqrt(L): the scaled body, walking at the same Froude
+        number, meets the same fraction of its torque limits. Angles stay.
+        """
+        return replace(
+            self,
+            origin=_times(self.origin, length),
+            effort_limit_N_m=self.effort_limit_N_m * mass * length,
+            rotor_inertia=self.rotor_inertia * mass * length**2,
+            damping=self.damping * mass * length**1.5,
+        )
+
+
+@dataclass(frozen=True)
+class Weld:
+    """A rigid connection of two segments.
+
+    Attributes:
+        parent: Name of the inboard segment.
+        child: Name of the outboard segment.
+        origin: Origin of the child frame in the parent frame, p_PC [m].
+    """
+
+    parent: str
+    child: str
+    origin: Vector3
+
+    @property
+    def name(self) -> str:
+        """Name of the weld in a model file."""
+        return f"{self.child}_Weld"
+
+    def scaled(self, length: float) -> Weld:
+        """This weld with lengths multiplied by a factor."""
+        return replace(self, origin=_times(self.origin, length))
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """A tree of segments on a free-floating root.
+
+    Attributes:
+        segments: The bodies, parents before children; the first is the floating root (`Pelvis`).
+        joints: The revolute joints, in the order of their child segments.
+        welds: The rigid connections.
+        root_height: Height of the root frame in neutral standing [m].
+    """
+
+    segments: tuple[Segment, ...]
+    joints: tuple[Joint, ...]
+    welds: tuple[Weld, ...]
+    root_height: float
+
+    def __post_init__(self) -> None:
+        """Check that the tree is one.
+
+        Raises:
+            ValueError: A segment other than the root has no inboard joint, or one that is listed
+                after it.
+        """
+        seen: set[str] = set()
+        for segment in self.segments:
+            inboard = self._inboard_by_child.get(segment.name)
+            if segment.name in seen or (bool(seen) and (inboard is None or inboard.parent not in seen)):
+                raise ValueError(
+                    f"segments: '{segment.name}' must come once, after the parent that a joint or "
+                    "weld connects it to; reorder the segments or add the joint"
+                )
+            seen.add(segment.name)
+
+    @cached_property
+    def _inboard_by_child(self) -> dict[str, Joint | Weld]:
+        inboards: list[Joint | Weld] = [*self.joints, *self.welds]
+        return {inboard.child: inboard for inboard in inboards}
+
+    @cached_property
+    def _segment_by_name(self) -> dict[str, Segment]:
+        return {s.name: s for s in self.segments}
+
+    @cached_property
+    def _joint_by_name(self) -> dict[str, Joint]:
+        return {j.name: j for j in self.joints}
+
+    def segment(self, name: str) -> Segment:
+        """The segment called `name` (KeyError if there is none)."""
+        return self._segment_by_name[name]
+
+    def joint(self, name: str) -> Joint:
+        """The revolute joint called `name` (KeyError if there is none)."""
+        return self._joint_by_name[name]
+
+    def inboard(self, segment_name: str) -> Joint | Weld | None:
+        """The joint or weld that carries a segment; None for the floating root."""
+        return self._inboard_by_child.get(segment_name)
+
+    def tree(self) -> Iterator[tuple[Segment, Joint | Weld | None]]:
+        """Every segment with its inboard joint, parents first."""
+        return ((s, self.inboard(s.name)) for s in self.segments)
+
+    @cached_property
+    def origins(self) -> dict[str, npt.NDArray[np.float64]]:
+        """Origin of every body frame in neutral standing, p_WB [m], shape (3,) each."""
+        origins: dict[str, npt.NDArray[np.float64]] = {}
+        for segment, inboard in self.tree():
+            if inboard is None:
+                origins[segment.name] = np.array([0.0, 0.0, self.root_height])
+            else:
+                origins[segment.name] = origins[inboard.parent] + np.array(inboard.origin)
+        return origins
+
+    @property
+    def total_mass(self) -> float:
+        """Body mass [kg]."""
+        return math.fsum(s.mass for s in self.segments)
+
+    @property
+    def com(self) -> npt.NDArray[np.float64]:
+        """Centre of mass in neutral standing, p_WC [m], shape (3,)."""
+        moment = sum((s.mass * (self.origins[s.name] + s.com) for s in self.segments), np.zeros(3))
+        return np.asarray(moment / self.total_mass, dtype=np.float64)
+
+    @property
+    def inertia(self) -> npt.NDArray[np.float64]:
+        """Whole-body inertia about the centre of mass in neutral standing [kg m2], shape (3, 3)."""
+        total = np.zeros((3, 3))
+        for s in self.segments:
+            r = self.origins[s.name] + s.com - self.com
+            total += np.diag(s.inertia) + s.mass * (r @ r * np.eye(3) - np.outer(r, r))
+        return total
+
+    @property
+    def stature(self) -> float:
+        """Height of the vertex (top of the head's solid) in neutral standing [m]."""
+        head = self.segment("Head")
+        return float(self.origins["Head"][2] + head.com[2] + head.shape.extent[2] / 2.0)
+
+    @property
+    def hip_height(self) -> float:
+        """Height of the hip joints in neutral standing [m]."""
+        return float(self.origins["RightLeg_Femur_Thigh"][2])
+
+    @property
+    def leg_length(self) -> float:
+        """Distance from hip to ankle joint along the straight leg [m]."""
+        return self.hip_height - self.sole_height
+
+    @property
+    def sole_height(self) -> float:
+        """Height of the ankle joints above the sole [m]."""
+        return float(self.origins["RightLeg_Ankle"][2])
+
+    @property
+    def hip_half_width(self) -> float:
+        """Distance of each hip joint from the plane of symmetry [m]."""
+        return float(self.origins["LeftLeg_Femur_Thigh"][1])
+
+    def scaled(self, mass: float, stature: float) -> Skeleton:
+        """The same person at another body mass [kg] and stature [m].
+
+        One factor for all lengths, one for all masses; inertias then go with m L2, torque limits
+        with m L (see `Joint.scaled`).
+
+        Raises:
+            ParameterError: (a ValueError) `mass` outside 30..200 kg or `stature` outside
+                1.2..2.2 m, or not a number.
+        """
+        require_in_range("mass", mass, "kg", *MASS_RANGE_KG)
+        require_in_range("stature", stature, "m", *STATURE_RANGE_M)
+        length_factor = stature / self.stature
+        mass_factor = mass / self.total_mass
+        return Skeleton(
+            segments=tuple(s.scaled(length_factor, mass_factor) for s in self.segments),
+            joints=tuple(j.scaled(length_factor, mass_factor) for j in self.joints),
+            welds=tuple(w.scaled(length_factor) for w in self.welds),
+            root_height=self.root_height * length_factor,
+        )
+
+
+def _left_name(name: str) -> str:
+    return name.replace("Right", "Left")
+
+
+def _times(v: Vector3, factor: float) -> Vector3:
+    return (v[0] * factor, v[1] * factor, v[2] * factor)

@@ -1,0 +1,1 @@
+"""Control as plain mathematics, without Systems: joint torques, inverse kinematics, balance."""

@@ -1,0 +1,47 @@
+"""From the forces at single contacts to what a force plate under each foot would show."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+UNLOADED_N = 1.0
+"""Vertical force below which a foot counts as unloaded: its centre of pressure would be noise."""
+
+
+@dataclass(frozen=True)
+class FootForce:
+    """Ground reaction on one foot, in the world frame W.
+
+    Attributes:
+        f_W: force [N], shape (3,).
+        p_WCop: centre of pressure on the ground plane [m], shape (3,); zero while unloaded.
+        free_moment: torque about the vertical through the centre of pressure [N m]; zero while unloaded.
+        loaded: whether the vertical force exceeds UNLOADED_N.
+    """
+
+    f_W: Array
+    p_WCop: Array
+    free_moment: float
+    loaded: bool
+
+
+def foot_force(f_W: Array, tau_Wo: Array, ground_height: float = 0.0) -> FootForce:
+    """Centre of pressure and free moment of a foot's whole contact wrench.
+
+    Taken from the wrench and not from the centroid of a contact patch, which is another point (drake#22440).
+
+    Args:
+        f_W: sum of the contact forces on the foot [N], shape (3,).
+        tau_Wo: their moment about the world origin [N m], shape (3,).
+        ground_height: height of the level ground [m].
+    """
+    if f_W[2] <= UNLOADED_N:
+        return FootForce(f_W, np.zeros(3), 0.0, False)
+    # On the plane z = ground_height the moment about the CoP has no horizontal part (Winter 2009, section 5.2.9).
+    x = (-tau_Wo[1] + ground_height * f_W[0]) / f_W[2]
+    y = (tau_Wo[0] + ground_height * f_W[1]) / f_W[2]
+    free_moment = tau_Wo[2] - (x * f_W[1] - y * f_W[0])
+    return FootForce(f_W, np.array([x, y, ground_height]), float(free_moment), True)

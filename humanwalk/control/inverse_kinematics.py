@@ -1,0 +1,278 @@
+"""Inverse kinematics of one leg by Newton's method with least squares (thesis section 4.1).
+
+The thesis solves J^T J dtheta = -J^T G for the residual G between the pose of the sole and its
+desired pose. As printed that system is singular: a leg has seven joints for six rows, and rank five
+with a straight knee (erratum E13). Here the step is taken by the Moore-Penrose inverse through an SVD,
+damped in proportion to the residual, kept inside the joint ranges, and accepted only if it makes the
+residual smaller; so a target out of reach gives the nearest pose, and says so.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import JacobianWrtVariable
+
+from humanwalk.quantity import quantity
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int_]
+
+STEP_FRACTIONS = (1.0, 0.5, 0.25, 0.1, 0.03, 0.003)
+"""Shares of a Newton step that are tried until one lessens the residual."""
+
+STATIONARY_GAIN = 1e-6
+"""Relative gain of a step below which the nearest pose counts as found."""
+
+RANK_FLOOR = 1e-9
+"""Singular value of the weighted J [m/rad] up to which a motion of the joints leaves the sole alone."""
+
+RESTART_GAIN = 0.5
+"""Share of the residual below which the pose found by a second start replaces the first: less would not be worth
+a jump of the joints."""
+
+
+@dataclass(frozen=True)
+class InverseKinematicsParameters:
+    """How the Newton iteration is run."""
+
+    jacobian: Literal["analytic", "numeric"] = "analytic"
+    """Drake's Jacobian, or central differences as in the thesis (section 1.4)."""
+
+    tolerance: float = quantity(1e-6, "m, rad", 1e-10, 1e-2)
+    """Norm of the residual at which a pose counts as reached (the thesis asks for exactly 0)."""
+
+    max_iterations: int = quantity(50, "", 1, 1000)
+    """Newton steps, accepted or not, before giving up."""
+
+    orientation_weight: float = quantity(0.03, "m/rad", 1e-3, 10.0)
+    """Length that one radian of wrong orientation counts as, where a target cannot be reached: less than the
+    height of an ankle, which keeps the sole's position and lets its pitch give way."""
+
+    damping: float = quantity(0.1, "1/rad", 0.0, 10.0)
+    """Damping of a step per weighted residual (after Sugihara 2011): short steps far from the target and past
+    singular postures, pure Newton steps near the target."""
+
+    singular_value_floor: float = quantity(0.01, "m/rad", 0.0, 1.0)
+    """Smaller singular values of the weighted J do not raise joint velocities any more."""
+
+    neutral_pull: float = quantity(0.1, "", 0.0, 1.0)
+    """Share of each angle that the first step takes back where that leaves the sole alone: seven joints for six
+    rows have one motion to spare, which would drift away from cycle to cycle."""
+
+    max_step: float = quantity(0.5, "rad", 1e-3, 3.2)
+    """Longest change of any joint in one step: keeps the linearisation meaningful."""
+
+    @property
+    def row_weights(self) -> Array:
+        """Weights of the six rows of the residual [rotation; position]."""
+        return np.repeat((self.orientation_weight, 1.0), 3)
+
+
+@dataclass(frozen=True)
+class InverseKinematicsSolution:
+    """What the iteration ended with.
+
+    Attributes:
+        theta: joint angles [rad], shape (n,), inside the joint ranges.
+        residual: norm of [rotation vector [rad]; position error [m]] at `theta`.
+        iterations: Newton steps tried.
+        converged: whether `residual` is within the tolerance; if not, `theta` is the nearest pose found.
+    """
+
+    theta: Array
+    residual: float
+    iterations: int
+    converged: bool
+
+
+class LegKinematics:
+    """The chain from a base frame to a tip frame through revolute joints of a plant.
+
+    Holds a context of its own, so one instance must not be shared between threads.
+
+    Args:
+        plant: a finalised plant; joints that are not in `joint_names` stay at zero.
+        base_frame: name of the frame P in which poses are measured.
+        tip_frame: name of the frame S whose pose is wanted.
+        joint_names: the chain's joints in the order of theta.
+    """
+
+    def __init__(self, plant: MultibodyPlant, base_frame: str, tip_frame: str, joint_names: Sequence[str]) -> None:
+        self._plant = plant
+        self._context = plant.CreateDefaultContext()
+        self._P = plant.GetFrameByName(base_frame)
+        self._S = plant.GetFrameByName(tip_frame)
+        joints = [plant.GetJointByName(name) for name in joint_names]
+        self.joint_names = tuple(joint_names)
+        self._q_index = np.array([joint.position_start() for joint in joints])
+        self._v_index = np.array([joint.velocity_start() for joint in joints])
+        self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
+        self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
+        self._q = plant.GetPositions(self._context)
+        self._q[self._q_index] = 0.0
+
+    def _set(self, theta: Array) -> None:
+        self._q[self._q_index] = theta
+        self._plant.SetPositions(self._context, self._q)
+
+    def X_PS(self, theta: Array) -> RigidTransform:
+        """Pose of the tip S in the base P at joint angles theta [rad], shape (n,)."""
+        self._set(theta)
+        return self._plant.CalcRelativeTransform(self._context, self._P, self._S)
+
+    def Jv_V_PS(self, theta: Array) -> Array:
+        """Drake's Jacobian of the spatial velocity (rotation first) of S in P, expressed in P; (6, n)."""
+        self._set(theta)
+        J = self._plant.CalcJacobianSpatialVelocity(
+            self._context, JacobianWrtVariable.kV, self._S, np.zeros(3), self._P, self._P
+        )
+        return np.asarray(J[:, self._v_index])
+
+    def Jv_V_PS_numeric(self, theta: Array, step: float = 1e-6) -> Array:
+        """The same Jacobian by central differences, as the thesis calculates it (section 1.4)."""
+        J = np.empty((6, theta.size))
+        for i in range(theta.size):
+            ahead, behind = theta.copy(), theta.copy()
+            ahead[i] += step
+            behind[i] -= step
+            J[:, i] = pose_error(self.X_PS(ahead), self.X_PS(behind)) / (2 * step)
+        return J
+
+    def jacobian(self, theta: Array, kind: Literal["analytic", "numeric"]) -> Array:
+        """The Jacobian of the named kind, shape (6, n)."""
+        return self.Jv_V_PS(theta) if kind == "analytic" else self.Jv_V_PS_numeric(theta)
+
+
+def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
+    """[rotation vector; translation] that leads from X_desired to X, in their common frame; (6,).
+
+    The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
+    """
+    angle_axis = RotationMatrix(X.rotation() @ X_desired.rotation().inverse()).ToAngleAxis()
+    return np.concatenate((angle_axis.angle() * angle_axis.axis(), X.translation() - X_desired.translation()))
+
+
+def solve_inverse_kinematics(
+    leg: LegKinematics,
+    X_PS_desired: RigidTransform,
+    theta_guess: Array,
+    parameters: InverseKinematicsParameters | None = None,
+) -> InverseKinematicsSolution:
+    """Joint angles that bring the leg's sole to a desired pose (thesis Eq 4-3 to 4-5).
+
+    Args:
+        leg: the kinematic chain, n joints.
+        X_PS_desired: desired pose of the sole S in the pelvis P.
+        theta_guess: warm start [rad], shape (n,); brought into the joint ranges first.
+        parameters: the iteration's settings.
+
+    Returns:
+        The pose found. Joints at the end of their range and a straight leg can stall the iteration short of a pose
+        that is within reach, so one that stalls is tried once more from the middle of the joint ranges.
+    """
+    parameters = parameters or InverseKinematicsParameters()
+    first, first_cost = _iterate(leg, X_PS_desired, theta_guess, parameters)
+    if first.converged:
+        return first
+    second, second_cost = _iterate(leg, X_PS_desired, 0.5 * (leg.lower + leg.upper), parameters)
+    better = second.converged or second_cost < RESTART_GAIN * first_cost
+    return replace(second if better else first, iterations=first.iterations + second.iterations)
+
+
+def _iterate(
+    leg: LegKinematics,
+    X_PS_desired: RigidTransform,
+    theta_guess: Array,
+    parameters: InverseKinematicsParameters,
+) -> tuple[InverseKinematicsSolution, float]:
+    """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
+    weight = parameters.row_weights
+    theta = np.clip(theta_guess, leg.lower, leg.upper)
+    error = pose_error(leg.X_PS(theta), X_PS_desired)
+    cost = float(np.linalg.norm(weight * error))
+    iterations, pull = 0, parameters.neutral_pull
+    while np.linalg.norm(error) > parameters.tolerance and iterations < parameters.max_iterations:
+        iterations += 1
+        J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
+        step = _newton_step(leg, theta, J, weight * error, parameters.damping * cost, pull)
+        step *= min(1.0, parameters.max_step / max(float(np.abs(step).max()), 1e-12))
+        # Shorten the step until it helps: far targets and joints at the end of their range bend the residual.
+        for fraction in STEP_FRACTIONS:
+            trial = np.clip(theta + fraction * step, leg.lower, leg.upper)
+            trial_error = pose_error(leg.X_PS(trial), X_PS_desired)
+            trial_cost = float(np.linalg.norm(weight * trial_error))
+            if trial_cost < cost:
+                break
+        gain = cost - trial_cost
+        if gain > 0:
+            theta, error, cost = trial, trial_error, trial_cost
+        # A step with the pull in it says nothing about what a pure Newton step would gain.
+        if gain < STATIONARY_GAIN * cost and not pull:
+            break
+        pull = 0.0
+    residual = float(np.linalg.norm(error))
+    return InverseKinematicsSolution(theta, residual, iterations, residual <= parameters.tolerance), cost
+
+
+def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, damping: float, pull: float) -> Array:
+    """Step -J+ error - (1 - J+ J) pull theta of the joints that are free to move, J+ damped; shape (n,)."""
+
+    def step_of(free: Indices) -> Array:
+        U, s, Vt = np.linalg.svd(J[:, free])
+        # The tiny constant keeps a posture that is exactly singular from dividing by zero.
+        along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
+        spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
+        step: Array = -along @ error - pull * spare.T @ (spare @ theta[free])
+        return step
+
+    return _of_free_joints(leg, theta, step_of)
+
+
+def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices], Array]) -> Array:
+    """A motion of the joints, shape (n,), in which none at the end of its range moves outward: those are held.
+
+    Args:
+        leg: the kinematic chain.
+        theta: joint angles [rad].
+        motion: gives the motion of the joints with the given places, when all others are held.
+    """
+    free = np.arange(theta.size)
+    while True:
+        result = np.zeros(theta.size)
+        result[free] = motion(free)
+        outward = ((theta <= leg.lower) & (result < 0)) | ((theta >= leg.upper) & (result > 0))
+        if not outward.any():
+            return result
+        free = np.setdiff1d(free, np.flatnonzero(outward))
+
+
+def joint_velocity(
+    leg: LegKinematics,
+    theta: Array,
+    V_PS_desired: Array,
+    parameters: InverseKinematicsParameters | None = None,
+) -> Array:
+    """Least-squares joint velocity [rad/s], shape (n,), for a spatial velocity of the sole.
+
+    Args:
+        leg: the kinematic chain.
+        theta: joint angles [rad] at which it is wanted; joints at the end of their range do not move outward.
+        V_PS_desired: [angular; translational] velocity of S in P, expressed in P, shape (6,) [rad/s, m/s].
+        parameters: weights, and the floor that keeps the velocity finite near singular postures.
+    """
+    parameters = parameters or InverseKinematicsParameters()
+    weight = parameters.row_weights
+    J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
+
+    def velocity_of(free: Indices) -> Array:
+        U, s, Vt = np.linalg.svd(J[:, free], full_matrices=False)
+        inverse = s / np.maximum(s, max(parameters.singular_value_floor, RANK_FLOOR)) ** 2
+        velocity: Array = (Vt.T * inverse) @ (U.T @ (weight * V_PS_desired))
+        return velocity
+
+    return _of_free_joints(leg, theta, velocity_of)

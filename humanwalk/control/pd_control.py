@@ -1,0 +1,144 @@
+"""The PD law of every joint (thesis Eq 4-23 with the damping's sign mended, E10), its gains and its stability."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from humanwalk.quantity import ParameterError, quantity
+
+Array = npt.NDArray[np.float64]
+
+THESIS_ANKLE = (10000.0, 10.0)
+"""kp [N m/rad] and kd [N m s/rad] of the ankle: the only gains that the thesis prints (Fig 4.8)."""
+
+STIFFNESS_BY_JOINT_KIND = {
+    "Femur": 20000.0,
+    "Tibia": 10000.0,
+    "Ankle": 10000.0,
+    "Foot": 1000.0,
+    "Lumbar": 5000.0,
+    "Thoracic": 5000.0,
+    "Scapula": 1000.0,
+    "Cervical": 300.0,
+    "Head": 300.0,
+    "Shoulder": 500.0,
+    "Elbow": 300.0,
+    "Wrist": 50.0,
+}
+"""kp [N m/rad] by the word in a joint's name. Ankle: thesis. The rest is ours: the thesis prints no other."""
+
+
+@dataclass(frozen=True)
+class PdGains:
+    """Gains of one joint."""
+
+    kp: float = quantity(0.0, "N m/rad", 0.0, 1e6)
+    kd: float = quantity(0.0, "N m s/rad", 0.0, 1e5)
+
+
+@dataclass(frozen=True)
+class ActuatorParameters:
+    """How the 42 joints follow their desired angles."""
+
+    preset: Literal["thesis", "damped"] = "thesis"
+    """`damped`: kd from `damping_ratio` and the joint-space inertia; `thesis`: that, but the ankles at 10000/10."""
+
+    law: Literal["implicit", "explicit"] = "implicit"
+    """`implicit`: the plant's own PD through its desired_state port; `explicit`: torque by the actuation port."""
+
+    damping_ratio: float = quantity(1.0, "", 0.0, 10.0)
+    """Of each joint's own oscillation against its joint-space inertia in neutral standing."""
+
+    stiffness_scale: float = quantity(1.0, "", 0.01, 100.0)
+    """Multiplies every kp of the presets (not those named in `gains`)."""
+
+    effort_limits: Literal["human", "none"] = "human"
+    """Saturate at the body's effort limits, or at nothing, as in the thesis."""
+
+    gains: Mapping[str, PdGains] = field(default_factory=dict)
+    """Gains of single joints by name; they override the preset."""
+
+
+def pd_torque(q: Array, v: Array, q_desired: Array, v_desired: Array, kp: Array, kd: Array) -> Array:
+    """tau = kp (q_d - q) + kd (v_d - v) [N m], element-wise (Eq 4-23 mended as in E10)."""
+    tau: Array = kp * (q_desired - q) + kd * (v_desired - v)
+    return tau
+
+
+def joint_gains(
+    joint_names: Sequence[str],
+    joint_space_inertia: Array,
+    parameters: ActuatorParameters,
+) -> tuple[Array, Array]:
+    """Gains kp [N m/rad] and kd [N m s/rad] of all joints, shape (n,) each.
+
+    Args:
+        joint_names: the n joints in actuator order.
+        joint_space_inertia: diagonal of the mass matrix for these joints [kg m2], shape (n,).
+        parameters: preset and overrides.
+
+    Raises:
+        ParameterError: an override names no joint of the body.
+    """
+    import difflib
+
+    kp = parameters.stiffness_scale * np.array([preset_stiffness(name) for name in joint_names])
+    kd = 2.0 * parameters.damping_ratio * np.sqrt(kp * joint_space_inertia)
+    if parameters.preset == "thesis":
+        ankle = np.array([is_ankle(name) for name in joint_names])
+        kp[ankle], kd[ankle] = THESIS_ANKLE
+    for name, gains in parameters.gains.items():
+        if name not in joint_names:
+            near = difflib.get_close_matches(name, joint_names, n=1, cutoff=0.0)[0]
+            raise ParameterError(
+                f"actuators.gains.{name}: no such joint; allowed: the {len(joint_names)} joints "
+                f"of the body; did you mean {near}?"
+            )
+        i = list(joint_names).index(name)
+        kp[i], kd[i] = gains.kp, gains.kd
+    return kp, kd
+
+
+def is_ankle(joint_name: str) -> bool:
+    """Whether a joint is one of the three ankle joints of a leg."""
+    return "LegAnkle" in joint_name
+
+
+def preset_stiffness(joint_name: str) -> float:
+    """kp [N m/rad] of the presets for a joint of the body."""
+    for word, kp in STIFFNESS_BY_JOINT_KIND.items():
+        if word in joint_name:
+            return kp
+    raise ParameterError(f"{joint_name}: no preset stiffness; give its gains in actuators.gains")
+
+
+def largest_stable_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> float:
+    """Largest step [s] at which the explicit law is stable, linearised at rest.
+
+    The plant's discrete update is v' = v + h M^-1 tau(q, v), q' = q + h v'. It is stable while every eigenvalue
+    of that map lies in the unit disc; eigenvalues at 1 belong to the free motion of the floating base.
+
+    Args:
+        M: mass matrix, shape (m, m), floating base first; its last n rows are the joints.
+        kp, kd: gains of the n joints.
+        upper: step beyond which nothing is looked for [s].
+    """
+    n, m = kp.size, M.shape[0]
+    inverse = np.linalg.inv(M)[:, m - n :]
+    K, D = inverse[m - n :] * kp, inverse[m - n :] * kd
+    eye = np.eye(n)
+
+    def is_stable(h: float) -> bool:
+        step = np.block([[eye - h * h * K, h * (eye - h * D)], [-h * K, eye - h * D]])
+        return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-9)
+
+    low, high = 1e-7, upper
+    if is_stable(high):
+        return high
+    while high / low > 1.01:
+        middle = float(np.sqrt(low * high))
+        low, high = (middle, high) if is_stable(middle) else (low, middle)
+    return low

@@ -1,0 +1,1 @@
+"""Builders that wire systems: take a Scenario, return a Diagram with named, exported ports."""

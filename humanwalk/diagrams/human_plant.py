@@ -1,0 +1,133 @@
+"""The subject on level ground: a MultibodyPlant with contact and actuators as the scenario asks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.geometry import (
+    AddContactMaterial,
+    AddRigidHydroelasticProperties,
+    Box,
+    CollisionFilterDeclaration,
+    GeometrySet,
+    HalfSpace,
+    ProximityProperties,
+    SceneGraph,
+)
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import (
+    AddMultibodyPlantSceneGraph,
+    ContactModel,
+    CoulombFriction,
+    DiscreteContactApproximation,
+    MultibodyPlant,
+)
+from pydrake.multibody.tree import JointActuatorIndex, ModelInstanceIndex
+from pydrake.systems.framework import DiagramBuilder
+
+from humanwalk.body.contact import FRICTION, HYDRO_SET, POINT_SET
+from humanwalk.body.plant import add_human, kinematics_plant
+from humanwalk.control.joint_map import JointMap
+from humanwalk.control.pd_control import joint_gains
+from humanwalk.scenario import Contact, Scenario
+from humanwalk.systems.pd_actuator_bank import install_gains
+
+Array = npt.NDArray[np.float64]
+
+CONTACT_MODELS = {
+    "point": ContactModel.kPoint,
+    "hydroelastic": ContactModel.kHydroelasticWithFallback,
+}
+UNUSED_CONTACT_SET = {"point": HYDRO_SET, "hydroelastic": POINT_SET}
+APPROXIMATIONS = {
+    "sap": DiscreteContactApproximation.kSap,
+    "lagged": DiscreteContactApproximation.kLagged,
+    "similar": DiscreteContactApproximation.kSimilar,
+}
+
+GROUND_LENGTH = 60.0
+GROUND_WIDTH = 6.0
+GROUND_BEHIND = 5.0
+"""Size of the ground that is seen [m]; the ground that is stood on has no end."""
+
+
+@dataclass(frozen=True)
+class HumanPlant:
+    """A finalised plant with its scene graph and the gains of its actuators (in actuator order)."""
+
+    plant: MultibodyPlant
+    instance: ModelInstanceIndex
+    scene_graph: SceneGraph
+    joints: JointMap
+    kp: Array
+    kd: Array
+
+
+def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
+    """Add the subject on level ground to a diagram, with gains installed and one contact set active."""
+    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, scenario.simulation.time_step)
+    instance = add_human(plant, scenario.subject)
+    add_level_ground(plant, scenario.contact)
+    plant.set_contact_model(CONTACT_MODELS[scenario.contact])
+    if plant.time_step() > 0:
+        plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])
+    kp, kd = human_gains(scenario)
+    if scenario.actuators.law == "implicit":
+        install_gains(plant, kp, kd)
+    if scenario.actuators.effort_limits == "none":
+        for i in range(plant.num_actuators()):
+            plant.get_mutable_joint_actuator(JointActuatorIndex(i)).set_effort_limit(np.inf)
+    plant.Finalize()
+    keep_one_contact_set(plant, scene_graph, scenario.contact)
+    return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd)
+
+
+def human_gains(scenario: Scenario) -> tuple[Array, Array]:
+    """kp and kd of the scenario's actuators, shape (42,) each, with the inertia of neutral standing."""
+    plant = kinematics_plant(scenario.subject)
+    joints = JointMap.of(plant)
+    inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
+    return joint_gains(joints.names, inertia, scenario.actuators)
+
+
+def add_level_ground(plant: MultibodyPlant, contact: Contact) -> None:
+    """Add a rigid half-space z < 0 with the thesis' friction, and a floor with a line at every metre to look at."""
+    friction = CoulombFriction(FRICTION, FRICTION)
+    properties = ProximityProperties()
+    AddContactMaterial(friction=friction, properties=properties)
+    if contact == "hydroelastic":
+        AddRigidHydroelasticProperties(properties)
+    world = plant.world_body()
+    plant.RegisterCollisionGeometry(world, RigidTransform(), HalfSpace(), "ground", properties)
+    middle = 0.5 * GROUND_LENGTH - GROUND_BEHIND
+    plant.RegisterVisualGeometry(
+        world,
+        RigidTransform([middle, 0.0, -0.026]),
+        Box(GROUND_LENGTH, GROUND_WIDTH, 0.05),
+        "floor",
+        np.array([0.80, 0.81, 0.80, 1.0]),
+    )
+    for metre in range(int(-GROUND_BEHIND) + 1, int(GROUND_LENGTH - GROUND_BEHIND)):
+        wide = 0.03 if metre % 5 == 0 else 0.012
+        plant.RegisterVisualGeometry(
+            world,
+            RigidTransform([float(metre), 0.0, -0.001]),
+            Box(wide, GROUND_WIDTH, 0.002),
+            f"metre_{metre}",
+            np.array([0.55, 0.57, 0.58, 1.0]),
+        )
+
+
+def keep_one_contact_set(plant: MultibodyPlant, scene_graph: SceneGraph, contact: Contact) -> None:
+    """Filter out of all collisions the foot geometry that the contact model does not use."""
+    inspector = scene_graph.model_inspector()
+    unused, everything = GeometrySet(), GeometrySet()
+    for index in plant.GetBodyIndices(plant.GetModelInstanceByName("human")):
+        for geometry in plant.GetCollisionGeometriesForBody(plant.get_body(index)):
+            everything.Add(geometry)
+            if UNUSED_CONTACT_SET[contact] in inspector.GetName(geometry):
+                unused.Add(geometry)
+    for geometry in plant.GetCollisionGeometriesForBody(plant.world_body()):
+        everything.Add(geometry)
+    filters = scene_graph.collision_filter_manager()
+    filters.Apply(CollisionFilterDeclaration().ExcludeWithin(unused).ExcludeBetween(unused, everything))

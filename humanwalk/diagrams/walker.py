@@ -1,0 +1,145 @@
+"""The thesis' walker as a Diagram: gait, inverse kinematics, PD actuators, plant, assumed balance, observers."""
+
+from pydrake.multibody.tree import UniformGravityFieldElement
+from pydrake.systems.framework import Diagram, DiagramBuilder
+
+from humanwalk.body import SIDES
+from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
+from humanwalk.diagrams.start import require_reachable, start_positions
+from humanwalk.scenario import Scenario
+from humanwalk.systems.balance_support import BalanceSupport
+from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.systems.foot_force_balance import FootForceBalance
+from humanwalk.systems.foot_force_observer import FootForceObserver
+from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.systems.pd_actuator_bank import PdActuatorBank
+from humanwalk.systems.upper_body_balance import UpperBodyBalance
+
+
+def make_walker(scenario: Scenario) -> Diagram:
+    """Wire the walker of a scenario; its default context stands at the scenario's start.
+
+    Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
+    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance.
+
+    Exported outputs, joints in actuator order:
+        state (97): plant state [q; v].
+        query_object: SceneGraph's, for a visualiser.
+        contact_results: the plant's.
+        net_actuation (42): torque that every actuator delivers [N m].
+        saturated (42): 1 where an actuator is at its limit.
+        desired_state (84): desired joint angles [rad], rates [rad/s].
+        ik_status (6): see InverseKinematicsSolver.
+        pelvis_reference (3): where the pelvis should be in W [m].
+        phase (2), contact_schedule (2): see GaitSplineSource.
+        soles (6), com (6): see BodyObserver.
+        foot_forces (16): see FootForceObserver.
+        support_wrench (6): torque [N m], force [N] of the assumed balance on the pelvis; with the support.
+        foot_shift (12): see FootForceBalance; with balance level 1.
+        alpha (4): see UpperBodyBalance; with balance level 2.
+
+    Exported input:
+        feedforward (42): torque added to every actuator's law [N m]; optional.
+
+    Raises:
+        ParameterError: the scenario's start or gait cannot be reached, or its actuators would be unstable.
+    """
+    require_reachable(scenario)
+    builder = DiagramBuilder()
+    human = add_human_plant(builder, scenario)
+    plant = human.plant
+    plant.SetDefaultPositions(start_positions(scenario))
+    reference = add_walking_reference(builder, scenario)
+    gait, solver = reference.gait, reference.inverse_kinematics
+    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law))
+    body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
+    feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
+    builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
+    builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
+
+    sole_targets: SoleTargets = gait
+    if scenario.balance.foot_force.enabled:
+        sole_targets = level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        builder.ExportOutput(level_1.get_shift_output_port(), "foot_shift")
+    connect_soles(builder, sole_targets, solver)
+
+    posture = reference.arms.get_posture_output_port()
+    if scenario.balance.upper_body.enabled:
+        level_2 = builder.AddNamedSystem(
+            "upper_body_balance",
+            UpperBodyBalance(
+                human.joints.names,
+                scenario.balance.upper_body,
+                scenario.simulation.control_period,
+            ),
+        )
+        builder.Connect(posture, level_2.get_posture_input_port())
+        builder.Connect(body.get_soles_output_port(), level_2.get_soles_input_port())
+        builder.Connect(body.get_com_output_port(), level_2.get_com_input_port())
+        builder.ExportOutput(level_2.get_alpha_output_port(), "alpha")
+        posture = level_2.get_balanced_posture_output_port()
+    builder.Connect(posture, solver.get_posture_input_port())
+
+    builder.Connect(solver.get_desired_state_output_port(), bank.get_desired_state_input_port())
+    builder.Connect(solver.get_sample_time_output_port(), bank.get_sample_time_input_port())
+    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
+    builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
+    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    if scenario.actuators.law == "implicit":
+        builder.Connect(
+            bank.get_plant_desired_state_output_port(),
+            plant.get_desired_state_input_port(human.instance),
+        )
+
+    if scenario.balance.support.enabled:
+        support = builder.AddNamedSystem("support", BalanceSupport(plant, scenario.balance.support))
+        builder.Connect(gait.get_pelvis_pose_output_port(), support.get_reference_pose_input_port())
+        builder.Connect(gait.get_pelvis_velocity_output_port(), support.get_reference_velocity_input_port())
+        builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
+        builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+        builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
+
+    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
+    for port, name in (
+        (plant.get_state_output_port(), "state"),
+        (human.scene_graph.get_query_output_port(), "query_object"),
+        (plant.get_contact_results_output_port(), "contact_results"),
+        (plant.get_net_actuation_output_port(), "net_actuation"),
+        (bank.get_saturated_output_port(), "saturated"),
+        (bank.get_held_desired_state_output_port(), "desired_state"),
+        (solver.get_status_output_port(), "ik_status"),
+        (gait.get_pelvis_position_output_port(), "pelvis_reference"),
+        (gait.get_phase_output_port(), "phase"),
+        (gait.get_contact_schedule_output_port(), "contact_schedule"),
+        (body.get_soles_output_port(), "soles"),
+        (body.get_com_output_port(), "com"),
+        (feet.get_foot_forces_output_port(), "foot_forces"),
+    ):
+        builder.ExportOutput(port, name)
+    diagram = builder.Build()
+    diagram.set_name("walker")
+    return diagram
+
+
+def _add_foot_force_balance(
+    builder: DiagramBuilder,
+    scenario: Scenario,
+    gait: GaitSplineSource,
+    feet: FootForceObserver,
+) -> FootForceBalance:
+    """Add balance level 1 between the gait and the inverse kinematics."""
+    level_1 = builder.AddNamedSystem(
+        "foot_force_balance",
+        FootForceBalance(
+            scenario.subject.mass * UniformGravityFieldElement.kDefaultStrength,
+            scenario.balance.foot_force,
+            scenario.simulation.control_period,
+        ),
+    )
+    for side in SIDES:
+        builder.Connect(gait.get_sole_pose_output_port(side), level_1.get_sole_pose_input_port(side))
+        builder.Connect(gait.get_sole_velocity_output_port(side), level_1.get_sole_velocity_input_port(side))
+    builder.Connect(gait.get_contact_schedule_output_port(), level_1.get_contact_schedule_input_port())
+    builder.Connect(feet.get_foot_forces_output_port(), level_1.get_foot_forces_input_port())
+    return level_1

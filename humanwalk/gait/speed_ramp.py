@@ -1,0 +1,52 @@
+"""Walking speed: ramped linearly from zero, then constant (thesis 4.2.3, erratum E26)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from humanwalk.quantity import check, quantity
+
+
+@dataclass(frozen=True)
+class SpeedRamp:
+    """Speed of the pelvis over time: 0 before t = 0, linear up to `duration`, then `speed`.
+
+    speed: [m/s], 0..3; the thesis walks at 1.4. 0 stands for ever.
+    duration: [s], 0..60. 0 is allowed and starts at full speed, with a jump of the velocities.
+    """
+
+    speed: float = quantity(1.4, "m/s", 0.0, 3.0)
+    duration: float = quantity(1.0, "s", 0.0, 60.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def distance(self, t: float) -> float:
+        """Distance walked until t [s]: [m]."""
+        if t <= 0.0:
+            return 0.0
+        if t < self.duration:
+            return 0.5 * self.speed * t * t / self.duration
+        return self.speed * (t - 0.5 * self.duration)
+
+    def speed_at(self, t: float) -> float:
+        """Speed at t [s]: [m/s]."""
+        if t < 0.0:
+            return 0.0
+        return self.speed * t / self.duration if t < self.duration else self.speed
+
+    def acceleration(self, t: float) -> float:
+        """Acceleration at t [s], right-sided: [m/s^2]."""
+        return self.speed / self.duration if 0.0 <= t < self.duration else 0.0
+
+    def time_at(self, distance: float) -> float:
+        """Time [s] at which `distance` >= 0 [m] has been walked; inf if never."""
+        if distance <= 0.0:
+            return 0.0
+        if self.speed == 0.0:
+            return math.inf
+        ramped = 0.5 * self.speed * self.duration
+        if distance < ramped:
+            return math.sqrt(2.0 * distance * self.duration / self.speed)
+        return distance / self.speed + 0.5 * self.duration

@@ -1,0 +1,141 @@
+"""The command line: humanwalk walk, replay, scenarios, model, diagram."""
+
+import logging
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from humanwalk.quantity import ParameterError
+
+# Drake, matplotlib and pyarrow are imported inside the commands: `--help` should not wait for them.
+
+app = typer.Typer(
+    help="A full-body human, 44 bodies and 42 joints, that walks in Drake.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+)
+console = Console(stderr=True)
+
+BAD_INPUT = 2
+FELL = 1
+INTERRUPTED = 130
+
+ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
+SetOption = Annotated[
+    list[str],
+    typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; may be given several times."),
+]
+
+
+@app.command(
+    epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
+    "humanwalk walk thesis --set gait.path.step_height=0.12 --set contact=hydroelastic"
+)
+def walk(
+    scenario: ScenarioArgument = "thesis",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the run; new or empty. Default: runs/SCENARIO.")
+    ] = None,
+    duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
+    set_: SetOption = [],  # noqa: B006
+    meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
+    replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
+    plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
+) -> None:
+    """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
+    from humanwalk.run.walk import walk_and_write
+
+    overrides = _overrides(set_)
+    if duration is not None:
+        overrides["duration"] = repr(duration)
+    run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)
+    end = run.summary["end"]
+    if end == "interrupted":
+        raise typer.Exit(INTERRUPTED)
+    if end != "completed":
+        raise typer.Exit(FELL)
+
+
+@app.command(epilog="Example: humanwalk replay runs/thesis")
+def replay(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+) -> None:
+    """Serve the replay of a run on this machine only, and open it in the browser."""
+    from humanwalk.run.replay import serve_replay
+
+    serve_replay(run, open_browser=browser, console=console)
+
+
+@app.command()
+def scenarios() -> None:
+    """List the scenarios that come with humanwalk."""
+    from rich.table import Table
+
+    from humanwalk.scenario import load_scenario, shipped_scenarios
+
+    table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "what it is")
+    for name in shipped_scenarios():
+        loaded = load_scenario(name)
+        table.add_row(name, f"{loaded.duration:g}", f"{loaded.gait.ramp.speed:g}", loaded.contact, loaded.description)
+    Console().print(table)
+
+
+@app.command(epilog="Example: humanwalk model --mass 55 --stature 1.60 -o small.sdf")
+def model(
+    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write.")],
+    mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
+    stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
+) -> None:
+    """Write the human as an SDF model that Drake parses."""
+    from humanwalk.body.plant import Subject
+    from humanwalk.body.sdf import to_sdf
+    from humanwalk.quantity import check
+    from humanwalk.run.files import write_text
+
+    subject = Subject(mass=mass, stature=stature)
+    check(subject, "--subject")
+    write_text(output, to_sdf(subject.skeleton))
+    console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
+
+
+@app.command(epilog="Example: humanwalk diagram thesis -o diagram.svg")
+def diagram(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write; svg, png or pdf by its suffix.")],
+    scenario: ScenarioArgument = "thesis",
+    set_: SetOption = [],  # noqa: B006
+    depth: Annotated[int, typer.Option(min=0, max=5, help="How many levels of diagrams to open.")] = 1,
+) -> None:
+    """Draw the block diagram of a scenario's systems."""
+    from humanwalk.diagrams.walker import make_walker
+    from humanwalk.run.diagram_picture import draw_diagram
+    from humanwalk.scenario import load_scenario
+
+    draw_diagram(make_walker(load_scenario(scenario, _overrides(set_))), output, depth)
+    console.print(f"{output}")
+
+
+def main() -> None:
+    """Entry point; bad input is one line and exit code 2."""
+    # Drake's notices (ports, half-spaces) are not for people who walk; its errors arrive as exceptions.
+    logging.getLogger("drake").setLevel(logging.ERROR)
+    try:
+        app()
+    except ParameterError as error:
+        console.print(f"humanwalk: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+        sys.exit(BAD_INPUT)
+
+
+def _overrides(pairs: list[str]) -> dict[str, str]:
+    overrides = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key:
+            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like gait.ramp.speed=1.2")
+        overrides[key] = value
+    return overrides

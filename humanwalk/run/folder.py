@@ -1,0 +1,103 @@
+"""A run on disk: one folder with the scenario, the signals, the summary, the replay and the plots."""
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from humanwalk.quantity import ParameterError
+from humanwalk.run.files import make_folder, write_text, write_whole
+from humanwalk.run.measures import summarize
+from humanwalk.run.simulate import Outcome
+from humanwalk.scenario import Scenario, dump_scenario, load_scenario
+
+SCENARIO = "scenario.yaml"
+SIGNALS = "signals.parquet"
+SUMMARY = "summary.json"
+REPLAY = "replay.html"
+PLOTS = "plots"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run folder that is complete enough to look at: scenario, signals and summary are there."""
+
+    path: Path
+
+    @staticmethod
+    def open(path: Path) -> "Run":
+        """The run in a folder.
+
+        Raises:
+            ParameterError: the folder holds no run.
+        """
+        for name in (SCENARIO, SIGNALS, SUMMARY):
+            if not (path / name).is_file():
+                raise ParameterError(
+                    f"{path}: no run, {name} is missing; allowed: a folder written by humanwalk walk; "
+                    "give its path, or walk again"
+                )
+        return Run(path)
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """What was simulated."""
+        return load_scenario(self.path / SCENARIO)
+
+    @cached_property
+    def signals(self) -> pa.Table:
+        """The record; see `humanwalk.run.signals`."""
+        return pq.read_table(self.path / SIGNALS)
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The measures; see `humanwalk.run.measures.summarize`."""
+        summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
+        return summary
+
+    @property
+    def replay(self) -> Path:
+        """The replay page."""
+        return self.path / REPLAY
+
+    @property
+    def plots(self) -> Path:
+        """The folder of plots."""
+        return self.path / PLOTS
+
+
+def new_run_folder(wanted: Path | None, scenario_name: str) -> Path:
+    """Make the folder of a new run: the wanted one, else runs/NAME, runs/NAME-2, and so on.
+
+    Raises:
+        ParameterError: the wanted folder is not empty, or cannot be made.
+    """
+    if wanted is not None:
+        if wanted.is_dir() and any(wanted.iterdir()):
+            raise ParameterError(
+                f"-o {wanted}: holds files already; allowed: a new or empty folder; choose another, or remove it first"
+            )
+        make_folder(wanted)
+        return wanted
+    number = 1
+    while True:
+        path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
+        if not path.exists():
+            make_folder(path)
+            return path
+        number += 1
+
+
+def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
+    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all."""
+    summary = summarize(outcome, scenario_name)
+    metadata = {b"humanwalk": json.dumps({key: summary[key] for key in ("scenario", "seed", "versions")}).encode()}
+    signals = outcome.signals.replace_schema_metadata(metadata)
+    write_text(path / SCENARIO, dump_scenario(outcome.scenario))
+    write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
+    write_text(path / SUMMARY, json.dumps(summary, indent=2) + "\n")
+    return Run(path)

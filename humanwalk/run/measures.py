@@ -1,0 +1,172 @@
+"""What a walk amounts to: speed, lift, steps, support, torques, tracking and cost, each with one definition."""
+
+from importlib.metadata import version
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+from pydrake.multibody.tree import UniformGravityFieldElement
+
+from humanwalk.body import SIDES
+from humanwalk.diagrams.reference import make_gait
+from humanwalk.run.signals import TIME, matrix
+from humanwalk.run.simulate import Outcome
+from humanwalk.scenario import Scenario
+
+Array = npt.NDArray[np.float64]
+
+CONTACT_ON_N = 50.0
+CONTACT_OFF_N = 20.0
+"""Vertical force at which an unloaded foot counts as landed, and a loaded one as lifted [N]."""
+
+SHORTEST_PHASE_S = 0.05
+"""Contact or flight of a foot shorter than this is a bounce and no event [s]."""
+
+GRAVITY = UniformGravityFieldElement.kDefaultStrength
+
+
+def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
+    """The summary of a run, ready for JSON; keys carry their units.
+
+    Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
+    end. A run that ended before has null there.
+    """
+    scenario, signals = outcome.scenario, outcome.signals
+    time = signals[TIME].to_numpy()
+    steady = time >= steady_from(scenario)
+    joints = joint_names(signals)
+    com = matrix(signals, ["com.x_m", "com.y_m"])
+    supported = scenario.balance.support.enabled
+    return {
+        "scenario": scenario_name,
+        "description": scenario.description,
+        "survived": outcome.survived,
+        "end": outcome.end,
+        "duration_s": float(time[-1]),
+        "fall_time_s": float(time[-1]) if outcome.end == "fell" else None,
+        "steady_from_s": steady_from(scenario),
+        "distance_m": float(com[-1, 0] - com[0, 0]),
+        "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
+        "commanded_speed_m_s": scenario.gait.ramp.speed,
+        "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
+        "foot_lift_m": {side.lower(): foot_lift(signals, side) for side in SIDES},
+        "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
+        "steps": sum(len(touchdowns(signals, side)) for side in SIDES),
+        "external_support": supported,
+        "support_force_rms_N": _rms_norm(signals, "support.force_", "N", steady) if supported else 0.0,
+        "support_torque_rms_N_m": _rms_norm(signals, "support.torque_", "N_m", steady) if supported else 0.0,
+        "pelvis_tracking_rms_m": pelvis_tracking(signals, steady),
+        "peak_torque_N_m": {name: float(np.abs(signals[f"{name}.torque_N_m"].to_numpy()).max()) for name in joints},
+        "saturated_share": {name: float(signals[f"{name}.saturated"].to_numpy().mean()) for name in joints},
+        "tracking_error_rad": {name: tracking_error(signals, name, steady) for name in joints},
+        "ik_converged_share": float(matrix(signals, [f"{side.lower()}_leg.ik_converged" for side in SIDES]).mean()),
+        "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
+        "wall_time_s": outcome.wall_time,
+        "realtime_factor": float(time[-1]) / outcome.wall_time,
+        "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
+        "seed": scenario.seed,
+    }
+
+
+def steady_from(scenario: Scenario) -> float:
+    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed."""
+    return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
+
+
+def joint_names(signals: pa.Table) -> list[str]:
+    """The actuated joints of a record, in actuator order."""
+    ending = ".torque_N_m"
+    return [name.removesuffix(ending) for name in signals.column_names if name.endswith(ending)]
+
+
+def foot_contact(signals: pa.Table, side: str) -> npt.NDArray[np.bool_]:
+    """Whether a foot is on the ground, by its vertical force with hysteresis and without bounces; shape (rows,)."""
+    time = signals[TIME].to_numpy()
+    force = signals[f"{side.lower()}_foot.force_z_N"].to_numpy()
+    return contact_with_hysteresis(time, force)
+
+
+def contact_with_hysteresis(time: Array, force: Array) -> npt.NDArray[np.bool_]:
+    """On above CONTACT_ON_N, off below CONTACT_OFF_N; phases shorter than SHORTEST_PHASE_S are merged away."""
+    on, off = force >= CONTACT_ON_N, force <= CONTACT_OFF_N
+    decided = np.where(on | off, np.arange(force.size), 0)
+    decided[0] = 0
+    contact: npt.NDArray[np.bool_] = on[np.maximum.accumulate(decided)]
+    edges = np.flatnonzero(np.diff(contact.astype(int))) + 1
+    for begin, end in pairwise(edges):
+        if time[end] - time[begin] < SHORTEST_PHASE_S:
+            contact[begin:end] = contact[begin - 1]
+    return contact
+
+
+def touchdowns(signals: pa.Table, side: str) -> Array:
+    """Times [s] at which a foot lands after having been lifted."""
+    contact = foot_contact(signals, side).astype(int)
+    times: Array = signals[TIME].to_numpy()[1:][np.diff(contact) > 0]
+    return times
+
+
+def foot_lift(signals: pa.Table, side: str) -> float | None:
+    """Median over the strides of the sole's greatest height above its height at the start [m]; null without strides."""
+    time = signals[TIME].to_numpy()
+    height = signals[f"{side.lower()}_sole.z_m"].to_numpy()
+    landings = touchdowns(signals, side)
+    peaks = [height[(time >= begin) & (time < end)].max() for begin, end in pairwise(landings)]
+    return float(np.median(peaks) - height[0]) if peaks else None
+
+
+def foot_line_error(signals: pa.Table, side: str) -> float:
+    """Greatest sideways distance of a sole from the line along x on which it started [m]."""
+    y = signals[f"{side.lower()}_sole.y_m"].to_numpy()
+    return float(np.abs(y - y[0]).max())
+
+
+def pelvis_tracking(signals: pa.Table, rows: npt.NDArray[np.bool_]) -> float | None:
+    """Root mean square distance of the pelvis from its walking reference [m]."""
+    if not rows.any():
+        return None
+    actual = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"])
+    wanted = matrix(signals, [f"pelvis.reference_{axis}_m" for axis in "xyz"])
+    return float(np.sqrt(((actual - wanted)[rows] ** 2).sum(axis=1).mean()))
+
+
+def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -> float | None:
+    """Root mean square difference between a joint's desired and actual angle [rad]."""
+    if not rows.any():
+        return None
+    error = signals[f"{joint}.desired_angle_rad"].to_numpy() - signals[f"{joint}.angle_rad"].to_numpy()
+    return float(np.sqrt((error[rows] ** 2).mean()))
+
+
+def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:
+    """Mechanical cost of transport: time integral of sum |tau w| over m g d, nothing regained.
+
+    Args:
+        signals: the record.
+        rows: which rows count.
+        mass: of the body [kg].
+    """
+    if rows.sum() < 2:
+        return None
+    time = signals[TIME].to_numpy()[rows]
+    x = signals["com.x_m"].to_numpy()[rows]
+    names = joint_names(signals)
+    power = np.abs(
+        matrix(signals, [f"{name}.torque_N_m" for name in names])
+        * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
+    ).sum(axis=1)
+    distance = x[-1] - x[0]
+    return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
+
+
+def _slope(time: Array, x: Array) -> float | None:
+    return float((x[-1] - x[0]) / (time[-1] - time[0])) if time.size > 1 else None
+
+
+def _rms_norm(signals: pa.Table, prefix: str, unit: str, rows: npt.NDArray[np.bool_]) -> float | None:
+    if not rows.any():
+        return None
+    vectors = matrix(signals, [f"{prefix}{axis}_{unit}" for axis in "xyz"])[rows]
+    return float(np.sqrt((vectors**2).sum(axis=1).mean()))

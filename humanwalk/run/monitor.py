@@ -1,0 +1,70 @@
+"""Ends a simulation that makes no more sense: a fall, a number that is none, a person who pressed Ctrl-C."""
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context, EventStatus
+
+FALL_HEIGHT_SHARE = 0.6
+"""Share of its height at the start below which the pelvis counts as fallen."""
+
+CHECK_PERIOD = 0.01
+"""Simulated time between two looks at the state [s]; looking is not free."""
+
+
+@dataclass
+class Monitor:
+    """Watches the plant of a root diagram while its simulator advances.
+
+    Attributes:
+        plant: the plant.
+        on_progress: called with the simulated time [s] at every look.
+        reason: why the simulation was ended: "fell", "not a number", "interrupted"; empty while it goes on.
+        interrupted: set from outside to end the simulation at the next look.
+    """
+
+    plant: MultibodyPlant
+    on_progress: Callable[[float], None] = lambda time: None
+    reason: str = ""
+    interrupted: bool = False
+    _next_look: float = field(default=0.0, repr=False)
+    _fallen_below: float = field(default=-np.inf, repr=False)
+
+    def __call__(self, root_context: Context) -> EventStatus:
+        """Simulator monitor: look at the state every CHECK_PERIOD."""
+        time = root_context.get_time()
+        if time < self._next_look:
+            return EventStatus.DidNothing()
+        self._next_look = time + CHECK_PERIOD
+        q = self.plant.GetPositions(self.plant.GetMyContextFromRoot(root_context))
+        pelvis_height = q[self.plant.GetBodyByName("Pelvis").floating_positions_start() + 6]
+        if self._fallen_below == -np.inf:
+            self._fallen_below = FALL_HEIGHT_SHARE * pelvis_height
+        if not np.isfinite(q).all():
+            self.reason = "not a number"
+        elif pelvis_height < self._fallen_below:
+            self.reason = "fell"
+        elif self.interrupted:
+            self.reason = "interrupted"
+        else:
+            self.on_progress(time)
+            return EventStatus.Succeeded()
+        return EventStatus.ReachedTermination(self.plant, self.reason)
+
+    @contextmanager
+    def stop_on_interrupt(self) -> Iterator[None]:
+        """Within the block, Ctrl-C ends the simulation cleanly; a second one does what it always did."""
+
+        def interrupt(signum: int, frame: object) -> None:
+            self.interrupted = True
+            signal.signal(signal.SIGINT, previous)
+
+        previous = signal.signal(signal.SIGINT, interrupt)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, previous)

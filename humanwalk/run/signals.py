@@ -1,0 +1,103 @@
+"""What a run records: one row per signal period, one named column with a unit per number."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder
+from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
+
+from humanwalk.body import SIDES
+from humanwalk.control.joint_map import JointMap
+
+Array = npt.NDArray[np.float64]
+
+TIME = "time_s"
+
+
+def _xyz(prefix: str, unit: str) -> list[str]:
+    return [f"{prefix}{axis}_{unit}" for axis in "xyz"]
+
+
+def signal_columns(joints: JointMap) -> dict[str, list[str]]:
+    """Column names of every exported port of a walker that is recorded, in the order of the port's elements.
+
+    Names are `thing.quantity_unit`: `RightLegTibiaMotion.angle_rad`, `right_foot.force_z_N`.
+    """
+    state = [""] * (joints.num_positions + joints.num_positions - 1)
+    state[:7] = [*(f"pelvis.quaternion_{axis}" for axis in "wxyz"), *_xyz("pelvis.", "m")]
+    first_v = joints.num_positions
+    state[first_v : first_v + 6] = [*_xyz("pelvis.angular_velocity_", "rad_s"), *_xyz("pelvis.velocity_", "m_s")]
+    for name, q, v in zip(joints.names, joints.q, joints.v, strict=True):
+        state[q] = f"{name}.angle_rad"
+        state[first_v + v] = f"{name}.velocity_rad_s"
+    foot = [*_xyz("force_", "N"), *_xyz("cop_", "m"), "free_moment_N_m", "loaded"]
+    sides = [side.lower() for side in SIDES]
+    return {
+        "state": state,
+        "desired_state": [
+            *(f"{name}.desired_angle_rad" for name in joints.names),
+            *(f"{name}.desired_velocity_rad_s" for name in joints.names),
+        ],
+        "net_actuation": [f"{name}.torque_N_m" for name in joints.names],
+        "saturated": [f"{name}.saturated" for name in joints.names],
+        "soles": [column for side in sides for column in _xyz(f"{side}_sole.", "m")],
+        "com": [*_xyz("com.", "m"), *_xyz("com.velocity_", "m_s")],
+        "foot_forces": [f"{side}_foot.{column}" for side in sides for column in foot],
+        "phase": [f"{side}_foot.phase" for side in sides],
+        "contact_schedule": [f"{side}_foot.scheduled" for side in sides],
+        "ik_status": [
+            f"{side}_leg.{column}" for column in ("ik_residual", "ik_iterations", "ik_converged") for side in sides
+        ],
+        "pelvis_reference": [*_xyz("pelvis.reference_", "m")],
+        "support_wrench": [*_xyz("support.torque_", "N_m"), *_xyz("support.force_", "N")],
+        "foot_shift": [
+            *(column for side in sides for column in _xyz(f"{side}_foot.shift_", "m")),
+            *(column for side in sides for column in _xyz(f"{side}_foot.shift_velocity_", "m_s")),
+        ],
+        "alpha": [
+            "balance.alpha_forward_rad",
+            "balance.alpha_left_rad",
+            "balance.alpha_forward_rate_rad_s",
+            "balance.alpha_left_rate_rad_s",
+        ],
+    }
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """Log sinks on the exported ports of a walker inside a root diagram."""
+
+    sinks: dict[str, VectorLogSink]
+    columns: dict[str, list[str]]
+
+    @staticmethod
+    def add_to(builder: DiagramBuilder, walker: Diagram, joints: JointMap, period: float) -> "Recorder":
+        """Connect a sink to every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
+        columns = signal_columns(joints)
+        sinks = {
+            port: LogVectorOutput(walker.GetOutputPort(port), builder, period)
+            for port in columns
+            if walker.HasOutputPort(port)
+        }
+        return Recorder(sinks, columns)
+
+    def table(self, context: Context) -> pa.Table:
+        """Everything recorded so far; also after a simulation that ended early.
+
+        Args:
+            context: root context of the simulation.
+        """
+        logs = {port: sink.FindLog(context) for port, sink in self.sinks.items()}
+        rows = min(log.num_samples() for log in logs.values())
+        data: dict[str, Array] = {TIME: next(iter(logs.values())).sample_times()[:rows].copy()}
+        for port, log in logs.items():
+            data |= zip(self.columns[port], log.data()[:, :rows].copy(), strict=True)
+        return pa.table(data)
+
+
+def matrix(signals: pa.Table, columns: Sequence[str]) -> Array:
+    """Columns of a table as an array, shape (rows, len(columns))."""
+    return np.column_stack([signals[column].to_numpy() for column in columns])

@@ -1,0 +1,98 @@
+"""Simulates a scenario and returns what happened."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import pyarrow as pa
+from pydrake.geometry import Meshcat
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+from pydrake.systems.framework import DiagramBuilder
+
+from humanwalk.control.joint_map import JointMap
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.run.monitor import Monitor
+from humanwalk.run.replay import add_visualizer
+from humanwalk.run.signals import Recorder
+from humanwalk.scenario import Scenario
+
+CENIC_MAX_STEP = 0.01
+"""Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A simulation that has ended.
+
+    Attributes:
+        scenario: what was simulated.
+        signals: the record, see `humanwalk.run.signals`.
+        end: "completed", or why it ended before: "fell", "not a number", "solver failed: ...", "interrupted".
+        wall_time: time that the simulation took on the clock [s], without building the diagram.
+    """
+
+    scenario: Scenario
+    signals: pa.Table
+    end: str
+    wall_time: float
+
+    @property
+    def survived(self) -> bool:
+        """Whether the walker was up for the whole duration."""
+        return self.end == "completed"
+
+
+def simulate(
+    scenario: Scenario,
+    meshcat: Meshcat | None = None,
+    on_progress: Callable[[float], None] | None = None,
+    realtime_rate: float = 0.0,
+) -> Outcome:
+    """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
+
+    Args:
+        scenario: what to simulate.
+        meshcat: shows and records the motion; the caller publishes the recording.
+        on_progress: called with the simulated time [s] every 10 ms of it.
+        realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
+
+    Raises:
+        ParameterError: the scenario cannot be simulated, with a mend.
+    """
+    builder = DiagramBuilder()
+    walker = builder.AddNamedSystem("walker", make_walker(scenario))
+    plant = walker.GetSubsystemByName("plant")
+    assert isinstance(plant, MultibodyPlant)
+    recorder = Recorder.add_to(builder, walker, JointMap.of(plant), scenario.recording.signal_period)
+    if meshcat is not None:
+        add_visualizer(builder, walker.GetOutputPort("query_object"), meshcat, scenario.recording.frame_rate)
+    diagram = builder.Build()
+    diagram.set_name("humanwalk")
+    simulator = Simulator(diagram)
+    if scenario.simulation.integrator == "cenic":
+        ApplySimulatorConfig(
+            SimulatorConfig(
+                integration_scheme="cenic",
+                accuracy=scenario.simulation.accuracy,
+                max_step_size=CENIC_MAX_STEP,
+            ),
+            simulator,
+        )
+    simulator.set_target_realtime_rate(realtime_rate)
+    monitor = Monitor(plant)
+    if on_progress is not None:
+        monitor.on_progress = on_progress
+    simulator.set_monitor(monitor)
+
+    started = time.perf_counter()
+    with monitor.stop_on_interrupt():
+        try:
+            simulator.Initialize()
+            simulator.AdvanceTo(scenario.duration)
+            end = monitor.reason or "completed"
+        except RuntimeError as error:
+            # Drake's solvers throw when the state has run away; what was recorded until then is worth keeping.
+            end = monitor.reason or f"solver failed: {str(error).splitlines()[0]}"
+    wall_time = time.perf_counter() - started
+    return Outcome(scenario, recorder.table(simulator.get_context()), end, wall_time)

@@ -1,0 +1,117 @@
+"""One walk from the command line: simulate with a progress bar, write the run folder, print the summary."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from humanwalk.run.files import write_text
+from humanwalk.run.folder import REPLAY, Run, new_run_folder, write_run
+from humanwalk.run.plots import write_plots
+from humanwalk.run.replay import make_meshcat, static_page
+from humanwalk.run.simulate import Outcome, simulate
+from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
+
+
+def walk_and_write(
+    scenario: str,
+    overrides: Mapping[str, str],
+    output: Path | None,
+    *,
+    live: bool,
+    replay: bool,
+    plots: bool,
+    console: Console,
+) -> Run:
+    """Simulate a scenario and write everything that comes out of it.
+
+    Args:
+        scenario: name or path.
+        overrides: see `load_scenario`.
+        output: folder of the run, or None for the next free one under runs/.
+        live: watch in the browser while it is simulated.
+        replay, plots: whether to write them.
+        console: where progress and summary go.
+
+    Raises:
+        ParameterError: bad input; nothing is left behind half-written.
+    """
+    loaded = load_scenario(scenario, overrides)
+    name = scenario if scenario in shipped_scenarios() else Path(scenario).stem
+    meshcat = make_meshcat() if live or replay else None
+    if live and meshcat is not None:
+        console.print(f"live at {meshcat.web_url()}")
+    path = new_run_folder(output, name)
+    try:
+        outcome = _simulate_with_progress(loaded, name, meshcat, live, console)
+    except BaseException:
+        # Nothing was recorded: an empty folder would only be in the way of the next attempt.
+        if not any(path.iterdir()):
+            path.rmdir()
+        raise
+    run = write_run(path, outcome, name)
+    with console.status("writing replay and plots"):
+        if replay and meshcat is not None:
+            write_text(path / REPLAY, static_page(meshcat))
+        if plots:
+            write_plots(run)
+    console.print(summary_table(run.summary))
+    console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
+    if replay:
+        console.print(f"look at it: humanwalk replay {run.path}")
+    return run
+
+
+def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: bool, console: Console) -> Outcome:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.1f} of {task.total:g} s"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task(name, total=scenario.duration)
+        return simulate(
+            scenario,
+            meshcat,
+            on_progress=lambda time: progress.update(task, completed=time),
+            realtime_rate=1.0 if live else 0.0,
+        )
+
+
+def summary_table(summary: Mapping[str, Any]) -> Table:
+    """The summary's main figures for people."""
+    table = Table(title=f"{summary['scenario']}: {summary['end']} at {summary['duration_s']:.2f} s", show_header=False)
+    table.add_column(justify="left")
+    table.add_column(justify="right")
+    table.add_column(justify="left")
+
+    def row(what: str, value: float | None, form: str, unit: str) -> None:
+        table.add_row(what, "-" if value is None else format(value, form), unit)
+
+    row(
+        "mean speed (commanded " + format(summary["commanded_speed_m_s"], "g") + ")",
+        summary["mean_speed_m_s"],
+        ".3f",
+        "m/s",
+    )
+    row("distance", summary["distance_m"], ".2f", "m")
+    row("steps", summary["steps"], "d", "")
+    for side in ("right", "left"):
+        lift = summary["foot_lift_m"][side]
+        row(f"{side} foot lift", None if lift is None else 100 * lift, ".1f", "cm")
+        row(f"{side} foot off its line", 100 * summary["foot_line_error_m"][side], ".2f", "cm")
+    row("lateral drift", 100 * summary["lateral_drift_m"], ".2f", "cm")
+    tracking = summary["pelvis_tracking_rms_m"]
+    row("pelvis off its reference, rms", None if tracking is None else 100 * tracking, ".2f", "cm")
+    if summary["external_support"]:
+        row("EXTERNAL SUPPORT force, rms", summary["support_force_rms_N"], ".0f", "N")
+        row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
+    name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1])
+    row(f"peak torque, {name}", torque, ".0f", "N m")
+    row("cost of transport", summary["cost_of_transport"], ".2f", "")
+    row("real-time factor", summary["realtime_factor"], ".2f", "")
+    return table

@@ -1,0 +1,303 @@
+"""The scenario: who walks, how, on what and for how long. One dataclass is the file format; every default is valid.
+
+A file names only what differs from the defaults:
+
+    description: The thesis' walk with a lower step
+    gait:
+      path: {step_height: 0.12}
+
+Units are SI throughout: metres, seconds, radians, newtons, kilograms.
+"""
+
+import dataclasses
+import difflib
+import math
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal
+
+import yaml
+from pydrake.common.yaml import yaml_dump, yaml_load
+
+from humanwalk.body.plant import Subject
+from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBodyBalanceParameters
+from humanwalk.control.balance_support import BalanceSupportParameters
+from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
+from humanwalk.control.pd_control import ActuatorParameters
+from humanwalk.gait.arm_swing import ArmSwingParameters
+from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.gait.speed_ramp import SpeedRamp
+from humanwalk.quantity import ParameterError, check, quantity
+
+Contact = Literal["point", "hydroelastic"]
+
+
+@dataclass(frozen=True)
+class GaitParameters:
+    """The walk that is asked for."""
+
+    ramp: SpeedRamp = SpeedRamp()
+    """Speed of the pelvis over time."""
+
+    path: FootPathParameters = FootPathParameters()
+    """Path of each foot."""
+
+    first_swing: Literal["Right", "Left"] = "Right"
+    """Leg that swings first."""
+
+    arms: ArmSwingParameters = ArmSwingParameters()
+    """Swing of the arms."""
+
+
+@dataclass(frozen=True)
+class StartParameters:
+    """The body at time zero: standing still above the origin, facing +x."""
+
+    joint_angles: dict[str, float] = field(default_factory=dict)
+    """Angles [rad] by joint name; every other joint stands at its desired angle."""
+
+    pelvis_lift: float = quantity(0.0, "m", -0.5, 0.5)
+    """Height of the pelvis above the one at which the soles touch the ground."""
+
+    joint_noise: float = quantity(0.0, "rad", 0.0, 0.2)
+    """Standard deviation of a random error of every joint angle, drawn from the scenario's seed."""
+
+
+@dataclass(frozen=True)
+class BalanceParameters:
+    """What keeps the body upright."""
+
+    support: BalanceSupportParameters = BalanceSupportParameters()
+    """The assumed balance: a spring-damper on the pelvis."""
+
+    foot_force: FootForceBalanceParameters = FootForceBalanceParameters()
+    """Level 1 of the thesis."""
+
+    upper_body: UpperBodyBalanceParameters = UpperBodyBalanceParameters()
+    """Level 2 of the thesis."""
+
+
+@dataclass(frozen=True)
+class SimulationParameters:
+    """How time advances."""
+
+    integrator: Literal["discrete", "cenic"] = "discrete"
+    """Fixed steps of `time_step`, or Drake's error-controlled convex integrator (then time_step must be 0)."""
+
+    time_step: float = quantity(0.001, "s", 0.0, 0.01)
+    """Step of the discrete plant."""
+
+    contact_approximation: Literal["sap", "lagged", "similar"] = "lagged"
+    """Drake's convex approximation of contact in the discrete plant; `lagged` is Drake's default."""
+
+    accuracy: float = quantity(1e-3, "", 1e-8, 0.1)
+    """Accuracy asked of cenic."""
+
+    control_period: float = quantity(0.005, "s", 0.0005, 0.05)
+    """Time between two solutions of the inverse kinematics."""
+
+
+@dataclass(frozen=True)
+class RecordingParameters:
+    """What is kept of a run."""
+
+    signal_period: float = quantity(0.005, "s", 0.0005, 0.1)
+    """Time between two rows of the signals."""
+
+    frame_rate: float = quantity(32.0, "1/s", 1.0, 240.0)
+    """Frames per second of the replay."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Everything a run depends on."""
+
+    description: str = ""
+    """One line for people."""
+
+    duration: float = quantity(15.0, "s", 0.001, 3600.0)
+    """Simulated time; the thesis runs 15 s."""
+
+    seed: int = 0
+    """Of everything random."""
+
+    contact: Contact = "point"
+    """Contact model under the feet."""
+
+    subject: Subject = Subject()
+    """Whose body."""
+
+    gait: GaitParameters = GaitParameters()
+    start: StartParameters = StartParameters()
+    inverse_kinematics: InverseKinematicsParameters = InverseKinematicsParameters()
+    actuators: ActuatorParameters = ActuatorParameters()
+    balance: BalanceParameters = BalanceParameters()
+    simulation: SimulationParameters = SimulationParameters()
+    recording: RecordingParameters = RecordingParameters()
+
+    def __post_init__(self) -> None:
+        """Check every number against its range, and the numbers that belong together.
+
+        Raises:
+            ParameterError: with the field, the value, the allowed range and a mend, in one line.
+        """
+        check(self)
+        simulation = self.simulation
+        if simulation.integrator == "cenic" and simulation.time_step != 0:
+            raise ParameterError(
+                f"simulation.time_step: {simulation.time_step:g} does not go with integrator cenic; allowed: 0; "
+                "set time_step: 0, or integrator: discrete"
+            )
+        if simulation.integrator == "discrete" and simulation.time_step == 0:
+            raise ParameterError(
+                "simulation.time_step: 0 needs an integrator that keeps joint limits; allowed: above 0 to 0.01 s "
+                "with integrator discrete; set time_step: 0.001, or integrator: cenic"
+            )
+
+
+def shipped_scenarios() -> dict[str, Path]:
+    """Files of the scenarios that come with humanwalk, by name."""
+    folder = Path(str(resources.files("humanwalk"))) / "models" / "scenarios"
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Scenario:
+    """Load a shipped scenario by name, or any scenario by the path of its file.
+
+    Args:
+        name_or_path: "thesis", or a YAML file.
+        overrides: values to replace by dotted field name, each written as in YAML, e.g.
+            {"gait.path.step_height": "0.12"}.
+
+    Raises:
+        ParameterError: no such scenario, not a scenario, or a value that cannot be used; one line.
+    """
+    shipped = shipped_scenarios()
+    path = shipped.get(str(name_or_path), Path(name_or_path))
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "is not text"
+        raise ParameterError(
+            f"scenario: {name_or_path}: {reason}; allowed: {', '.join(shipped)}, or the path of a YAML file"
+        ) from None
+    return parse_scenario(text, overrides, name=path.name)
+
+
+def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario") -> Scenario:
+    """Scenario from YAML text; see `load_scenario`."""
+    data = _read_yaml(text, name)
+    for key, value in (overrides or {}).items():
+        _override(data, key, _read_scalar(value, key))
+    scenario = _build(Scenario, data, "")
+    assert isinstance(scenario, Scenario)
+    return scenario
+
+
+def dump_scenario(scenario: Scenario) -> str:
+    """The complete scenario as YAML, every field written out; `parse_scenario` reads it back to an equal one."""
+    return yaml_dump(dataclasses.asdict(scenario))
+
+
+def _read_yaml(text: str, name: str) -> dict[str, Any]:
+    try:
+        data = yaml_load(data=text, private=True) if text.strip() else {}
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        problem = getattr(error, "problem", None) or "cannot be read"
+        raise ParameterError(f"{name}: not YAML{where}: {problem}; mend that line") from None
+    if data is None:
+        return {}
+    if not isinstance(data, dict):
+        raise ParameterError(f"{name}: a scenario is a mapping of fields, like `duration: 15`")
+    # Root keys that begin with an underscore hold anchors, as everywhere in Drake; a tag is no such key.
+    return {key: value for key, value in data.items() if key == "_tag" or not str(key).startswith("_")}
+
+
+def _read_scalar(value: str, key: str) -> Any:
+    return _read_yaml(f"value: {value}", f"--set {key}")["value"]
+
+
+def _override(data: dict[str, Any], key: str, value: Any) -> None:
+    *parents, leaf = key.split(".")
+    for parent in parents:
+        child = data.setdefault(parent, {})
+        if not isinstance(child, dict):
+            raise ParameterError(f"{key}: {parent} holds no fields; name a field of the scenario")
+        data = child
+    data[leaf] = value
+
+
+def _build(kind: Any, value: Any, path: str) -> Any:
+    """`value` out of a YAML file as an instance of the annotated type `kind`.
+
+    pydrake's own typed loader knows neither frozen dataclasses nor Literal, and its messages are no single lines.
+    """
+    origin = typing.get_origin(kind)
+    if dataclasses.is_dataclass(kind):
+        return _build_dataclass(kind, value, path)
+    if origin is Literal:
+        choices = typing.get_args(kind)
+        if value not in choices:
+            raise ParameterError(
+                f"{path}: {value!r} is unknown; allowed: {', '.join(choices)}{_did_you_mean(value, choices)}"
+            )
+        return value
+    if origin in (dict, Mapping):
+        item = typing.get_args(kind)[1]
+        if not isinstance(value, dict):
+            raise ParameterError(f"{path}: {_shown(value)} is no mapping; allowed: name: value pairs")
+        return {str(key): _build(item, entry, f"{path}.{key}") for key, entry in value.items()}
+    return _build_scalar(kind, value, path)
+
+
+def _build_dataclass(kind: Any, value: Any, path: str) -> Any:
+    if not isinstance(value, dict):
+        raise ParameterError(
+            f"{path}: {_shown(value)} is not a group of fields; allowed: "
+            f"{', '.join(f.name for f in dataclasses.fields(kind))}"
+        )
+    hints = typing.get_type_hints(kind)
+    names = [f.name for f in dataclasses.fields(kind)]
+    arguments = {}
+    for key, entry in value.items():
+        name = f"{path}.{key}" if path else str(key)
+        if key not in names:
+            raise ParameterError(f"{name}: no such field; allowed: {', '.join(names)}{_did_you_mean(key, names)}")
+        arguments[key] = _build(hints[key], entry, name)
+    try:
+        return kind(**arguments)
+    except ParameterError as error:
+        raise ParameterError(f"{path}.{error}" if path else str(error)) from None
+
+
+def _build_scalar(kind: Any, value: Any, path: str) -> Any:
+    wanted = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}[kind]
+    if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except OverflowError:
+            value = math.inf
+    if kind is float and isinstance(value, str):
+        # YAML 1.1 reads 1e-3 as text: it wants 1.0e-3.
+        try:
+            return float(value)
+        except ValueError:
+            pass
+    if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+        raise ParameterError(f"{path}: {_shown(value)} is not {wanted}; write {wanted}")
+    return value
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _did_you_mean(value: Any, choices: typing.Sequence[str]) -> str:
+    near = difflib.get_close_matches(str(value), choices, n=1, cutoff=0.5)
+    return f"; did you mean {near[0]}?" if near else ""

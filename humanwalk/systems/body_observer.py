@@ -1,0 +1,63 @@
+"""LeafSystem: where the feet and the centre of mass are."""
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+
+from humanwalk.body import SIDES
+
+
+class BodyObserver(LeafSystem):
+    """Kinematics of the body from the plant's state.
+
+    Inputs:
+        state: plant state [q; v].
+
+    Outputs:
+        soles: (6) position of the right, then the left sole frame in W [m].
+        com: (6) position [m], then velocity [m/s] of the centre of mass in W.
+    """
+
+    def __init__(self, plant: MultibodyPlant) -> None:
+        """Make the observer of a finalised plant, which it uses for kinematics in a context of its own."""
+        super().__init__()
+        self._plant = plant
+        self._plant_context = plant.CreateDefaultContext()
+        self._sole_frames = [plant.GetFrameByName(f"{side}Leg_Sole") for side in SIDES]
+        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        needs = {self.input_port_ticket(self._state.get_index())}
+        self._soles_output = self.DeclareVectorOutputPort("soles", 6, self._calc_soles, prerequisites_of_calc=needs)
+        self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
+
+    def _update(self, context: Context) -> Context:
+        self._plant.SetPositionsAndVelocities(self._plant_context, self._state.Eval(context))
+        return self._plant_context
+
+    def _calc_soles(self, context: Context, output: BasicVector) -> None:
+        plant_context = self._update(context)
+        output.SetFromVector(
+            np.concatenate([frame.CalcPoseInWorld(plant_context).translation() for frame in self._sole_frames])
+        )
+
+    def _calc_com(self, context: Context, output: BasicVector) -> None:
+        plant_context = self._update(context)
+        output.SetFromVector(
+            np.concatenate(
+                (
+                    self._plant.CalcCenterOfMassPositionInWorld(plant_context),
+                    self._plant.CalcCenterOfMassTranslationalVelocityInWorld(plant_context),
+                )
+            )
+        )
+
+    def get_state_input_port(self) -> InputPort:
+        """Input state."""
+        return self._state
+
+    def get_soles_output_port(self) -> OutputPort:
+        """Output soles."""
+        return self._soles_output
+
+    def get_com_output_port(self) -> OutputPort:
+        """Output com."""
+        return self._com_output

@@ -1,0 +1,134 @@
+"""LeafSystem: where both soles and the pelvis should be, from the gait's splines."""
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.math import SpatialVelocity
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
+
+from humanwalk.body import SIDES, Side, Skeleton
+from humanwalk.gait.walking_gait import FootTarget, WalkingGait
+
+Array = npt.NDArray[np.float64]
+
+
+def _sole_velocity(foot: FootTarget) -> SpatialVelocity:
+    return SpatialVelocity(np.array([0.0, foot.pitch_rate, 0.0]), foot.velocity)
+
+
+class GaitSplineSource(LeafSystem):
+    """The walking reference as a function of time; it has no input.
+
+    Outputs:
+        X_PRs, X_PLs: RigidTransform, desired pose of the right and left sole frame in the pelvis P. Soles are level
+            in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by the path's toe_drop.
+        V_PRs, V_PLs: SpatialVelocity, their time derivatives, in P.
+        X_WP: RigidTransform, reference pose of the pelvis in the world: upright, walking along +x.
+        V_WP: SpatialVelocity, its time derivative, in W.
+        p_WP: (3) the translation of X_WP [m], for records.
+        phase: (2) phase of the right and of the left foot in [0, 1), 0 at touchdown.
+        contact_schedule: (2) right, left: 1 in stance, 0 in swing.
+    """
+
+    def __init__(self, gait: WalkingGait, skeleton: Skeleton) -> None:
+        """Make the source of a gait for a body whose pelvis frame is at hip height."""
+        super().__init__()
+        self._gait = gait
+        self._hip_height = skeleton.hip_height
+        self._X, self._V = {}, {}
+        for side in SIDES:
+            self._X[side] = self.DeclareAbstractOutputPort(
+                f"X_P{side[0]}s",
+                lambda: Value(RigidTransform()),
+                lambda context, output, side=side: output.set_value(self._sole_pose(self._foot(context, side))),
+                prerequisites_of_calc={self.time_ticket()},
+            )
+            self._V[side] = self.DeclareAbstractOutputPort(
+                f"V_P{side[0]}s",
+                lambda: Value(SpatialVelocity()),
+                lambda context, output, side=side: output.set_value(_sole_velocity(self._foot(context, side))),
+                prerequisites_of_calc={self.time_ticket()},
+            )
+        self._X_WP = self.DeclareAbstractOutputPort(
+            "X_WP",
+            lambda: Value(RigidTransform()),
+            self._calc_pelvis_pose,
+            prerequisites_of_calc={self.time_ticket()},
+        )
+        self._V_WP = self.DeclareAbstractOutputPort(
+            "V_WP",
+            lambda: Value(SpatialVelocity()),
+            self._calc_pelvis_velocity,
+            prerequisites_of_calc={self.time_ticket()},
+        )
+        self._p_WP = self.DeclareVectorOutputPort(
+            "p_WP",
+            3,
+            lambda context, output: output.SetFromVector(self._pelvis_position(context)),
+            prerequisites_of_calc={self.time_ticket()},
+        )
+        self._phase = self.DeclareVectorOutputPort(
+            "phase", 2, self._calc_phase, prerequisites_of_calc={self.time_ticket()}
+        )
+        self._contact_schedule = self.DeclareVectorOutputPort(
+            "contact_schedule",
+            2,
+            self._calc_contact_schedule,
+            prerequisites_of_calc={self.time_ticket()},
+        )
+
+    def _foot(self, context: Context, side: Side) -> FootTarget:
+        return self._gait.target(context.get_time()).foot(side)
+
+    def _sole_pose(self, foot: FootTarget) -> RigidTransform:
+        below_hips = self._hip_height - self._gait.parameters.offset
+        return RigidTransform(
+            RotationMatrix.MakeYRotation(foot.pitch),
+            foot.position - np.array([0.0, 0.0, below_hips]),
+        )
+
+    def _pelvis_position(self, context: Context) -> Array:
+        pelvis = self._gait.pelvis(context.get_time())
+        return np.array([pelvis.distance, 0.0, self._hip_height - pelvis.drop])
+
+    def _calc_pelvis_pose(self, context: Context, output: Value) -> None:
+        output.set_value(RigidTransform(self._pelvis_position(context)))
+
+    def _calc_pelvis_velocity(self, context: Context, output: Value) -> None:
+        pelvis = self._gait.pelvis(context.get_time())
+        output.set_value(SpatialVelocity(np.zeros(3), np.array([pelvis.speed, 0.0, -pelvis.drop_rate])))
+
+    def _calc_phase(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector([self._gait.phase(side, context.get_time()) for side in SIDES])
+
+    def _calc_contact_schedule(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector([float(self._foot(context, side).in_stance) for side in SIDES])
+
+    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
+        """Output X_PRs or X_PLs."""
+        return self._X[side]
+
+    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
+        """Output V_PRs or V_PLs."""
+        return self._V[side]
+
+    def get_pelvis_pose_output_port(self) -> OutputPort:
+        """Output X_WP."""
+        return self._X_WP
+
+    def get_pelvis_velocity_output_port(self) -> OutputPort:
+        """Output V_WP."""
+        return self._V_WP
+
+    def get_pelvis_position_output_port(self) -> OutputPort:
+        """Output p_WP."""
+        return self._p_WP
+
+    def get_phase_output_port(self) -> OutputPort:
+        """Output phase."""
+        return self._phase
+
+    def get_contact_schedule_output_port(self) -> OutputPort:
+        """Output contact_schedule."""
+        return self._contact_schedule

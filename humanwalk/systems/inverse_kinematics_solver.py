@@ -1,0 +1,126 @@
+"""LeafSystem: desired joint angles of both legs from the desired poses of both soles."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialVelocity
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
+
+from humanwalk.body import LEG_JOINTS, SIDES
+from humanwalk.control.inverse_kinematics import (
+    InverseKinematicsParameters,
+    LegKinematics,
+    joint_velocity,
+    solve_inverse_kinematics,
+)
+from humanwalk.control.joint_map import JointMap
+
+Array = npt.NDArray[np.float64]
+
+
+class InverseKinematicsSolver(LeafSystem):
+    """Newton inverse kinematics of both legs, warm-started, in a periodic discrete update.
+
+    Inputs:
+        X_PRs, X_PLs: RigidTransform, desired poses of the right and left sole in the pelvis P.
+        V_PRs, V_PLs: SpatialVelocity of the same, in P.
+        posture: (84) desired angles [rad] and rates [rad/s] of all 42 joints, in actuator order; the legs'
+            entries are replaced. Optional: zero when not connected.
+
+    Outputs (all show state, so reading them solves nothing):
+        desired_state: (84) desired joint angles [rad], then rates [rad/s], in actuator order.
+        sample_time: (1) the time at which they were solved [s].
+        status: (6) residual right, left; Newton steps right, left; converged right, left (1 or 0).
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        parameters: InverseKinematicsParameters,
+        period: float,
+        seed_posture: Mapping[str, float] | None = None,
+    ) -> None:
+        """Make the solver.
+
+        Args:
+            plant: finalised model of the body, for kinematics only.
+            parameters: settings of the Newton iteration.
+            period: time between solutions [s].
+            seed_posture: joint angles [rad] by name from which the first solution starts; knees that are not
+                named start at 0.3 rad, since a straight knee is singular.
+        """
+        super().__init__()
+        self._parameters = parameters
+        self._legs = {side: LegKinematics(plant, "Pelvis", f"{side}Leg_Sole", LEG_JOINTS[side]) for side in SIDES}
+        names = JointMap.of(plant).names
+        self._n = len(names)
+        self._places = {side: np.array([names.index(name) for name in LEG_JOINTS[side]]) for side in SIDES}
+        seed = {f"{side}LegTibiaMotion": 0.3 for side in SIDES} | dict(seed_posture or {})
+        seed_q = np.array([seed.get(name, 0.0) for name in names])
+
+        self._X, self._V = {}, {}
+        for side in SIDES:
+            letter = side[0]
+            self._X[side] = self.DeclareAbstractInputPort(f"X_P{letter}s", Value(RigidTransform()))
+            self._V[side] = self.DeclareAbstractInputPort(f"V_P{letter}s", Value(SpatialVelocity()))
+        self._posture = self.DeclareVectorInputPort("posture", 2 * self._n)
+
+        desired = self.DeclareDiscreteState(np.concatenate((seed_q, np.zeros(self._n))))
+        sample_time = self.DeclareDiscreteState(1)
+        status = self.DeclareDiscreteState(6)
+        self._desired_state_output = self.DeclareStateOutputPort("desired_state", desired)
+        self._sample_time_output = self.DeclareStateOutputPort("sample_time", sample_time)
+        self._status_output = self.DeclareStateOutputPort("status", status)
+        self._groups = (desired, sample_time, status)
+        self.DeclareInitializationDiscreteUpdateEvent(self._solve)
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
+
+    def _solve(self, context: Context, discrete: DiscreteValues) -> EventStatus:
+        desired, sample_time, status = self._groups
+        # Start from where the last solution would be now.
+        q_last, v_last = np.split(context.get_discrete_state(desired).value(), 2)
+        elapsed = context.get_time() - context.get_discrete_state(sample_time).value()[0]
+        warm = q_last + elapsed * v_last
+        if self._posture.HasValue(context):
+            q, v = np.split(self._posture.Eval(context), 2)
+        else:
+            q, v = np.zeros(self._n), np.zeros(self._n)
+        report = np.empty(6)
+        for i, side in enumerate(SIDES):
+            leg, places = self._legs[side], self._places[side]
+            solution = solve_inverse_kinematics(leg, self._X[side].Eval(context), warm[places], self._parameters)
+            q[places] = solution.theta
+            v[places] = joint_velocity(leg, solution.theta, self._V[side].Eval(context).get_coeffs(), self._parameters)
+            report[i::2] = solution.residual, solution.iterations, solution.converged
+        discrete.set_value(desired, np.concatenate((q, v)))
+        discrete.set_value(sample_time, [context.get_time()])
+        discrete.set_value(status, report)
+        return EventStatus.Succeeded()
+
+    def get_sole_pose_input_port(self, side: str) -> InputPort:
+        """Input X_PRs or X_PLs."""
+        return self._X[side]
+
+    def get_sole_velocity_input_port(self, side: str) -> InputPort:
+        """Input V_PRs or V_PLs."""
+        return self._V[side]
+
+    def get_posture_input_port(self) -> InputPort:
+        """Input posture."""
+        return self._posture
+
+    def get_desired_state_output_port(self) -> OutputPort:
+        """Output desired_state."""
+        return self._desired_state_output
+
+    def get_sample_time_output_port(self) -> OutputPort:
+        """Output sample_time."""
+        return self._sample_time_output
+
+    def get_status_output_port(self) -> OutputPort:
+        """Output status."""
+        return self._status_output

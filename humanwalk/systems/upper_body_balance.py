@@ -1,0 +1,101 @@
+"""LeafSystem: balance level 2 of the thesis, an upper body that turns against alpha."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiscreteValues,
+    EventStatus,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from humanwalk.body.groups import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
+from humanwalk.control.balance_levels import UpperBodyBalanceParameters, lean_angles
+
+Array = npt.NDArray[np.float64]
+
+
+class UpperBodyBalance(LeafSystem):
+    """Adds to the desired posture a bend of the spine against the lean of the body (thesis Fig 4.9, level 2).
+
+    Inputs:
+        posture: (2n) desired angles [rad], then rates [rad/s], in actuator order.
+        soles: (6) positions of the right and left sole in W [m].
+        com: (6) position [m] and velocity [m/s] of the centre of mass in W.
+
+    Outputs:
+        balanced_posture: (2n) the posture with the spine bent.
+        alpha: (4) filtered forward and leftward lean [rad], then their rates [rad/s].
+    """
+
+    def __init__(self, joint_names: Sequence[str], parameters: UpperBodyBalanceParameters, period: float) -> None:
+        """Make level 2 for joints in actuator order, updated every `period` seconds."""
+        super().__init__()
+        n = len(joint_names)
+        self._n = n
+        self._parameters = parameters
+        self._period = period
+        # Positive spine pitch is flexion (about y), positive roll bends to the right (about x).
+        self._bend = np.zeros((n, 2))
+        for column, joints, gain in (
+            (0, SPINE_PITCH_JOINTS, -parameters.pitch_gain),
+            (1, SPINE_ROLL_JOINTS, parameters.roll_gain),
+        ):
+            for joint in joints:
+                self._bend[list(joint_names).index(joint), column] = gain / len(joints)
+        self._posture = self.DeclareVectorInputPort("posture", 2 * n)
+        self._soles = self.DeclareVectorInputPort("soles", 6)
+        self._com = self.DeclareVectorInputPort("com", 6)
+        self._state = self.DeclareDiscreteState(4)
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
+        self._alpha_output = self.DeclareStateOutputPort("alpha", self._state)
+        self._posture_output = self.DeclareVectorOutputPort(
+            "balanced_posture",
+            2 * n,
+            self._calc_posture,
+            prerequisites_of_calc={
+                self.xd_ticket(),
+                self.input_port_ticket(self._posture.get_index()),
+            },
+        )
+
+    def _update(self, context: Context, discrete: DiscreteValues) -> EventStatus:
+        alpha, rate = np.split(context.get_discrete_state(self._state).value(), 2)
+        alpha = alpha + self._period * rate
+        soles = self._soles.Eval(context)
+        measured = lean_angles(0.5 * (soles[:3] + soles[3:]), self._com.Eval(context)[:3])
+        rate = (measured - alpha) / self._parameters.time_constant
+        discrete.set_value(self._state, np.concatenate((alpha, rate)))
+        return EventStatus.Succeeded()
+
+    def _calc_posture(self, context: Context, output: BasicVector) -> None:
+        alpha, rate = np.split(context.get_discrete_state(self._state).value(), 2)
+        posture = self._posture.Eval(context)
+        posture[: self._n] += self._bend @ alpha
+        posture[self._n :] += self._bend @ rate
+        output.SetFromVector(posture)
+
+    def get_posture_input_port(self) -> InputPort:
+        """Input posture."""
+        return self._posture
+
+    def get_soles_input_port(self) -> InputPort:
+        """Input soles."""
+        return self._soles
+
+    def get_com_input_port(self) -> InputPort:
+        """Input com."""
+        return self._com
+
+    def get_balanced_posture_output_port(self) -> OutputPort:
+        """Output balanced_posture."""
+        return self._posture_output
+
+    def get_alpha_output_port(self) -> OutputPort:
+        """Output alpha."""
+        return self._alpha_output
