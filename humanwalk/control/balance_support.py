@@ -25,10 +25,10 @@ class BalanceSupportParameters:
     damping: float = quantity(2500.0, "N s/m", 0.0, 1e5)
     """Force per velocity error: 0.86 of critical for 70 kg."""
 
-    rotational_stiffness: float = quantity(5000.0, "N m/rad", 0.0, 1e5)
+    rotational_stiffness: float = quantity(10000.0, "N m/rad", 0.0, 1e5)
     """Torque per rotation of the pelvis."""
 
-    rotational_damping: float = quantity(300.0, "N m s/rad", 0.0, 1e4)
+    rotational_damping: float = quantity(400.0, "N m s/rad", 0.0, 1e4)
     """Torque per angular-velocity error."""
 
 

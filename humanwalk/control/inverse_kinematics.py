@@ -53,7 +53,7 @@ class InverseKinematicsParameters:
     """Length that one radian of wrong orientation counts as, where a target cannot be reached: less than the
     height of an ankle, which keeps the sole's position and lets its pitch give way."""
 
-    damping: float = quantity(0.1, "1/rad", 0.0, 10.0)
+    damping: float = quantity(0.5, "1/rad", 0.0, 10.0)
     """Damping of a step per weighted residual (after Sugihara 2011): short steps far from the target and past
     singular postures, pure Newton steps near the target."""
 

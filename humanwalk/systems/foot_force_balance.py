@@ -7,7 +7,7 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.math import SpatialVelocity
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
 
-from humanwalk.body import SIDES
+from humanwalk.body import SIDES, Side
 from humanwalk.control.balance_levels import (
     FootForceBalanceParameters,
     desired_foot_forces,
@@ -77,19 +77,19 @@ class FootForceBalance(LeafSystem):
         discrete.set_value(self._state, np.concatenate((shift.ravel(), rate.ravel())))
         return EventStatus.Succeeded()
 
-    def _shifted_pose(self, context: Context, side: str, place: int) -> RigidTransform:
+    def _shifted_pose(self, context: Context, side: Side, place: int) -> RigidTransform:
         X = self._X[side].Eval(context)
         return RigidTransform(X.rotation(), X.translation() + self._shift_and_rate(context)[0, place])
 
-    def _shifted_velocity(self, context: Context, side: str, place: int) -> SpatialVelocity:
+    def _shifted_velocity(self, context: Context, side: Side, place: int) -> SpatialVelocity:
         V = self._V[side].Eval(context)
         return SpatialVelocity(V.rotational(), V.translational() + self._shift_and_rate(context)[1, place])
 
-    def get_sole_pose_input_port(self, side: str) -> InputPort:
+    def get_sole_pose_input_port(self, side: Side) -> InputPort:
         """Input X_PRs or X_PLs."""
         return self._X[side]
 
-    def get_sole_velocity_input_port(self, side: str) -> InputPort:
+    def get_sole_velocity_input_port(self, side: Side) -> InputPort:
         """Input V_PRs or V_PLs."""
         return self._V[side]
 
@@ -101,11 +101,11 @@ class FootForceBalance(LeafSystem):
         """Input foot_forces."""
         return self._foot_forces
 
-    def get_sole_pose_output_port(self, side: str) -> OutputPort:
+    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
         """Output X_PRs_shifted or X_PLs_shifted."""
         return self._X_outputs[side]
 
-    def get_sole_velocity_output_port(self, side: str) -> OutputPort:
+    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
         """Output V_PRs_shifted or V_PLs_shifted."""
         return self._V_outputs[side]
 

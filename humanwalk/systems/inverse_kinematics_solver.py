@@ -10,7 +10,7 @@ from pydrake.multibody.math import SpatialVelocity
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
 
-from humanwalk.body import LEG_JOINTS, SIDES
+from humanwalk.body import LEG_JOINTS, SIDES, Side
 from humanwalk.control.inverse_kinematics import (
     InverseKinematicsParameters,
     LegKinematics,
@@ -101,11 +101,11 @@ class InverseKinematicsSolver(LeafSystem):
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
 
-    def get_sole_pose_input_port(self, side: str) -> InputPort:
+    def get_sole_pose_input_port(self, side: Side) -> InputPort:
         """Input X_PRs or X_PLs."""
         return self._X[side]
 
-    def get_sole_velocity_input_port(self, side: str) -> InputPort:
+    def get_sole_velocity_input_port(self, side: Side) -> InputPort:
         """Input V_PRs or V_PLs."""
         return self._V[side]
 

@@ -30,6 +30,9 @@ class PdActuatorBank(LeafSystem):
     The `implicit` law hands them to the plant, whose solver applies the gains at the end of its step: stable at
     any step. The `explicit` law computes the torque from the measured state.
 
+    A continuous plant (time_step 0, integrated by CENIC) takes the desired rates of its implicit law with the wrong
+    sign, so there they go to it as torque, kd v_d, and as zero rates.
+
     Inputs:
         desired_state: (2n) desired angles [rad], then rates [rad/s].
         sample_time: (1) time of the desired state [s]. Optional: without it desired_state is taken as current.
@@ -40,9 +43,9 @@ class PdActuatorBank(LeafSystem):
     Outputs:
         held_desired_state: (2n) the desired state of now, for records.
         plant_desired_state: (2n) the desired state at the end of the plant's step, where its solver applies the
-            gains; for the plant's desired_state port (implicit law only).
-        actuation: (n) torque for the plant's actuation port [N m]: the feed-forward (implicit), the whole law
-            clipped to the effort limits (explicit).
+            gains; for the plant's desired_state port (implicit law only). Rates are 0 for a continuous plant.
+        actuation: (n) torque for the plant's actuation port [N m]: the feed-forward (implicit), with kd v_d for a
+            continuous plant; the whole law clipped to the effort limits (explicit).
         saturated: (n) 1 where an actuator delivers its effort limit, else 0.
     """
 
@@ -68,6 +71,7 @@ class PdActuatorBank(LeafSystem):
         self._kp, self._kd = kp, kd
         self._law = law
         self._time_step = plant.time_step()
+        self._rates_as_torque = law == "implicit" and plant.time_step() == 0
         if law == "explicit" and plant.time_step() > 0:
             require_stable(plant, kp, kd)
         n = len(self._joints.names)
@@ -90,12 +94,11 @@ class PdActuatorBank(LeafSystem):
             self._plant_desired_output = self.DeclareVectorOutputPort(
                 "plant_desired_state", 2 * n, self._calc_plant_desired, prerequisites_of_calc=hold
             )
-            needs = {self.input_port_ticket(self._feedforward.get_index())}
-        else:
-            needs = hold | {
-                self.input_port_ticket(self._state.get_index()),
-                self.input_port_ticket(self._feedforward.get_index()),
-            }
+        needs = {self.input_port_ticket(self._feedforward.get_index())}
+        if law == "explicit":
+            needs |= hold | {self.input_port_ticket(self._state.get_index())}
+        elif self._rates_as_torque:
+            needs |= hold
         self._actuation_output = self.DeclareVectorOutputPort(
             "actuation", n, self._calc_actuation, prerequisites_of_calc=needs
         )
@@ -119,13 +122,18 @@ class PdActuatorBank(LeafSystem):
         output.SetFromVector(self._held(context))
 
     def _calc_plant_desired(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._held(context, self._time_step))
+        desired = self._held(context, self._time_step)
+        if self._rates_as_torque:
+            desired[desired.size // 2 :] = 0.0
+        output.SetFromVector(desired)
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
         n = output.size()
         tau = np.zeros(n)
         if self._feedforward.HasValue(context):
             tau += self._feedforward.Eval(context)
+        if self._rates_as_torque:
+            tau += self._kd * self._held(context)[n:]
         if self._law == "explicit":
             desired, state = self._held(context), self._state.Eval(context)
             q, v = self._joints.positions(state), self._joints.velocities(state)

@@ -1,0 +1,97 @@
+"""How every plot looks: size, colours, labels and legend; matplotlib without pyplot, so nothing is global."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from humanwalk.body.visuals import SIDE_COLORS
+from humanwalk.run.files import write_whole
+
+Array = npt.NDArray[np.float64]
+
+FORMATS = ("png", "svg", "pdf")
+
+COLUMN_WIDTH = 5.6
+"""Width of a figure in inches; at DPI it is 896 pixels."""
+DPI = 160
+
+SIDE = SIDE_COLORS
+"""Right is blue, left is orange, as on the body."""
+AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
+"""World x, y, z in plots of one vector: neither of the two sides' colours."""
+DESIRED = "#202020"
+REFERENCE = "#777777"
+STANCE = "#e9edf2"
+
+TITLE_SIZE, LABEL_SIZE, TICK_SIZE = 9.5, 9.0, 8.0
+
+
+def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1, **subplots: Any) -> Figure:
+    """A figure of column width with rows x columns empty axes.
+
+    Args:
+        title: what is shown, with the thesis' figure number where it has one.
+        height: in inches.
+        rows, columns: of axes.
+        subplots: further arguments of `Figure.subplots`, like sharex.
+    """
+    figure = Figure(figsize=(COLUMN_WIDTH, height), layout="constrained")
+    figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_SIZE)
+    for axes in np.ravel(figure.subplots(rows, columns, **subplots)):
+        axes.tick_params(labelsize=TICK_SIZE)
+        axes.grid(True, color="#dddddd", linewidth=0.5)
+        axes.set_axisbelow(True)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def label(axes: Axes, x: str, y: str) -> None:
+    """Name both axes; an empty text leaves that axis unnamed."""
+    axes.set_xlabel(x, fontsize=LABEL_SIZE)
+    axes.set_ylabel(y, fontsize=LABEL_SIZE)
+
+
+def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
+    """Legend in one line above the axes, where it hides no curve."""
+    entries = list(handles) if handles is not None else axes.get_legend_handles_labels()[0]
+    axes.legend(
+        handles=entries,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 0.98),
+        ncols=len(entries),
+        frameon=False,
+        fontsize=TICK_SIZE,
+        handlelength=1.6,
+        columnspacing=1.4,
+    )
+
+
+def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:
+    """A line through samples; what is no finite number, as at the end of a failed run, is left out."""
+    (line,) = axes.plot(x, np.where(np.isfinite(y), y, np.nan), **{"linewidth": 1.2} | style)
+    return line
+
+
+def shade(axes: Axes, x: Array, where: npt.NDArray[np.bool_], text: str) -> None:
+    """Grey bands over the stretches of x where `where` holds."""
+    axes.fill_between(
+        x, 0.0, 1.0, where=where.tolist(), transform=axes.get_xaxis_transform(), color=STANCE, linewidth=0, label=text
+    )
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a figure in the format of the suffix, whole or not at all, without the date; returns the path.
+
+    Raises:
+        ParameterError: the file cannot be written.
+    """
+    form = path.suffix.removeprefix(".")
+    no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
+    write_whole(path, lambda beside: figure.savefig(beside, format=form, dpi=DPI, metadata=no_date))
+    return path

@@ -1,0 +1,67 @@
+"""Assumed balance: a linear spring-damper between the pelvis and its reference."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+
+from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+
+K_ROTATION, K, D_ROTATION, D = 5000.0, 30000.0, 300.0, 2500.0
+SUPPORT = BalanceSupportParameters(
+    stiffness=K, damping=D, rotational_stiffness=K_ROTATION, rotational_damping=D_ROTATION
+)
+REFERENCE = RigidTransform(RollPitchYaw(0.1, -0.2, 0.7), [1.0, 2.0, 0.9])
+ZERO = np.zeros(6)
+small = st.floats(-1e-4, 1e-4)
+
+
+def displaced(error):
+    """The reference turned about W's axes by error[:3] and moved by error[3:]."""
+    turn = RotationMatrix(RollPitchYaw(error[:3]))
+    return RigidTransform(turn @ REFERENCE.rotation(), REFERENCE.translation() + error[3:])
+
+
+def test_no_wrench_on_the_reference():
+    V = np.arange(6.0)
+    np.testing.assert_allclose(support_wrench(REFERENCE, V, REFERENCE, V, SUPPORT), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_each_displacement_is_pushed_back_along_itself_alone(axis, sign):
+    error = sign * 0.01 * np.eye(6)[axis]
+    stiffness = K_ROTATION if axis < 3 else K
+    wrench = support_wrench(displaced(error), ZERO, REFERENCE, ZERO, SUPPORT)
+    np.testing.assert_allclose(wrench, -stiffness * error, atol=1e-9)
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_each_velocity_error_is_braked_along_itself_alone(axis):
+    V_reference = np.arange(6.0)
+    error = 0.3 * np.eye(6)[axis]
+    damping = D_ROTATION if axis < 3 else D
+    wrench = support_wrench(REFERENCE, V_reference + error, REFERENCE, V_reference, SUPPORT)
+    np.testing.assert_allclose(wrench, -damping * error, atol=1e-9)
+
+
+@given(a=st.tuples(*[small] * 6), b=st.tuples(*[small] * 6))
+def test_small_errors_add(a, b):
+    def wrench(error):
+        return support_wrench(displaced(error), ZERO, REFERENCE, ZERO, SUPPORT)
+
+    a, b = np.array(a), np.array(b)
+    # Rotations commute up to the product of their angles.
+    np.testing.assert_allclose(wrench(a + b), wrench(a) + wrench(b), atol=4 * K_ROTATION * 1e-8)
+
+
+def test_the_longest_way_round_is_not_taken():
+    """A pelvis turned by 350 degrees is 10 degrees off, on the other side."""
+    wrench = support_wrench(displaced(np.array([0, 0, np.deg2rad(350), 0, 0, 0])), ZERO, REFERENCE, ZERO, SUPPORT)
+    np.testing.assert_allclose(wrench[2], K_ROTATION * np.deg2rad(10), rtol=1e-9)
+
+
+def test_its_damping_for_the_reference_body_is_as_documented():
+    mass, p = 70.0, BalanceSupportParameters()
+    assert p.damping / (2 * np.sqrt(p.stiffness * mass)) == pytest.approx(0.86, abs=0.005)

@@ -1,0 +1,40 @@
+"""Joint map: the places of the joints in a state are those that the plant itself uses."""
+
+import numpy as np
+
+from humanwalk.body import human
+
+
+def test_it_lists_every_joint_of_the_body_in_the_model_files_order(joints):
+    assert joints.names == tuple(joint.name for joint in human().joints)
+    assert len(joints.names) == 42
+
+
+def test_positions_and_velocities_are_the_plants_own(plant, joints):
+    context = plant.CreateDefaultContext()
+    rng = np.random.default_rng(0)
+    q, v = rng.normal(size=len(joints.names)), rng.normal(size=len(joints.names))
+    for name, angle, rate in zip(joints.names, q, v, strict=True):
+        joint = plant.GetJointByName(name)
+        joint.set_angle(context, angle)
+        joint.set_angular_rate(context, rate)
+    state = plant.GetPositionsAndVelocities(context)
+    np.testing.assert_array_equal(joints.positions(state), q)
+    np.testing.assert_array_equal(joints.positions(state[: joints.num_positions]), q)
+    np.testing.assert_array_equal(joints.velocities(state), v)
+
+
+def test_actuators_act_on_the_joints_in_the_maps_order(plant, joints):
+    selection = plant.MakeActuationMatrix()
+    np.testing.assert_array_equal(selection[joints.v], np.eye(len(joints.names)))
+
+
+def test_order_of_joints_and_order_of_state_differ(joints):
+    assert not np.all(np.diff(joints.q) > 0)
+
+
+def test_limits_are_the_skeletons(joints):
+    for i, name in enumerate(joints.names):
+        joint = human().joint(name)
+        np.testing.assert_allclose((joints.lower[i], joints.upper[i]), joint.range_rad, rtol=1e-9)
+        np.testing.assert_allclose(joints.effort_limits[i], joint.effort_limit_N_m, rtol=1e-9)

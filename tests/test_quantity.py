@@ -1,0 +1,101 @@
+"""Numbers with a range: one line says which field, what it was, what is allowed and how to mend it."""
+
+import math
+from dataclasses import dataclass, field
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.quantity import UNIT_SLIPS, ParameterError, check, quantity, require_in_range
+
+
+@dataclass(frozen=True)
+class Leaf:
+    length: float = quantity(0.5, "m", 0.1, 1.0)
+    share: float = quantity(0.5, "", 0.0, 1.0)
+    label: str = "no quantity"
+
+
+@dataclass(frozen=True)
+class Tree:
+    leaf: Leaf = Leaf()
+    by_name: dict[str, Leaf] = field(default_factory=dict)
+    numbers: dict[str, float] = field(default_factory=dict)
+    angle: float = quantity(0.0, "rad", -1.0, 1.0)
+
+
+def message_of(parameters, path=""):
+    with pytest.raises(ParameterError) as caught:
+        check(parameters, path)
+    return str(caught.value)
+
+
+def test_defaults_pass():
+    check(Tree())
+
+
+@given(st.floats(0.1, 1.0))
+def test_every_value_within_the_range_passes_both_ends_included(value):
+    check(Leaf(length=value))
+
+
+@given(st.floats(0.0, 0.1, exclude_max=True) | st.floats(1.0, exclude_min=True))
+def test_every_value_beyond_the_range_is_refused(value):
+    assert "length" in message_of(Leaf(length=value))
+
+
+def test_the_message_has_field_value_range_and_mend_in_one_line():
+    message = message_of(Leaf(length=2.0))
+    assert message == "length: 2 is out of range; allowed: 0.1 to 1 m; the nearest allowed value is 1"
+
+
+def test_a_value_below_the_range_is_led_to_its_lower_end():
+    assert message_of(Leaf(length=0.01)).endswith("the nearest allowed value is 0.1")
+
+
+def test_a_pure_number_has_no_unit_in_its_message():
+    assert "allowed: 0 to 1;" in message_of(Leaf(share=3.0))
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "high", "meant", "mended"),
+    [
+        (50.0, "m", 1.0, "centimetres", "0.5 (m)"),
+        (500.0, "m", 1.0, "millimetres", "0.5 (m)"),
+        (45.0, "rad", 1.0, "degrees", "0.7854 (rad)"),
+        (250.0, "s", 1.0, "milliseconds", "0.25 (s)"),
+        (5.04, "m/s", 3.0, "km/h", "1.4 (m/s)"),
+        (70000.0, "kg", 200.0, "grams", "70 (kg)"),
+    ],
+)
+def test_a_slip_of_the_unit_is_recognised(value, unit, high, meant, mended):
+    with pytest.raises(ParameterError, match="out of range") as caught:
+        require_in_range("x", value, unit, 0.0, high)
+    assert str(caught.value).endswith(f"if it is in {meant}, write {mended}")
+
+
+@pytest.mark.parametrize("unit", UNIT_SLIPS)
+def test_no_slip_is_guessed_for_a_value_that_is_too_small(unit):
+    with pytest.raises(ParameterError, match="nearest allowed value is 10$"):
+        require_in_range("x", -1.0, unit, 10.0, 1e9)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_no_finite_number_is_refused_even_without_bounds(value):
+    with pytest.raises(ParameterError, match=r"^x: .*; give a finite number$"):
+        require_in_range("x", value, "m", -math.inf, math.inf)
+
+
+def test_nested_dataclasses_and_mappings_of_them_are_entered_by_dotted_names():
+    assert message_of(Tree(leaf=Leaf(length=2.0))).startswith("leaf.length: 2 ")
+    assert message_of(Tree(by_name={"Knee": Leaf(length=2.0)})).startswith("by_name.Knee.length: 2 ")
+    assert message_of(Tree(angle=2.0), "gait.path").startswith("gait.path.angle: 2 ")
+
+
+def test_plain_mappings_and_texts_are_no_quantities():
+    check(Tree(numbers={"anything": math.nan}))
+
+
+def test_a_parameter_error_is_a_value_error():
+    assert issubclass(ParameterError, ValueError)
