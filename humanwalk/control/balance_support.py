@@ -1,6 +1,7 @@
 """The balance that the thesis assumes: a spring-damper between the pelvis and its walking reference."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,14 @@ class BalanceSupportParameters:
     rotational_damping: float = quantity(400.0, "N m s/rad", 0.0, 1e4)
     """Torque per angular-velocity error."""
 
+    @cached_property
+    def diagonals(self) -> tuple[Array, Array]:
+        """Stiffness and damping of the six directions [rotation; translation], shape (6,) each."""
+        return (
+            np.repeat((self.rotational_stiffness, self.stiffness), 3),
+            np.repeat((self.rotational_damping, self.damping), 3),
+        )
+
 
 def support_wrench(
     X_WP: RigidTransform,
@@ -46,7 +55,6 @@ def support_wrench(
         V_WP, V_WPref: [angular; translational] velocities in W, shape (6,) [rad/s, m/s].
         parameters: stiffness and damping.
     """
-    stiffness = np.repeat((parameters.rotational_stiffness, parameters.stiffness), 3)
-    damping = np.repeat((parameters.rotational_damping, parameters.damping), 3)
-    wrench: Array = -stiffness * pose_error(X_WP, X_WPref) - damping * (V_WP - V_WPref)
+    K, D = parameters.diagonals
+    wrench: Array = -K * pose_error(X_WP, X_WPref) - D * (V_WP - V_WPref)
     return wrench

@@ -7,15 +7,18 @@ damped in proportion to the residual, kept inside the joint ranges, and accepted
 residual smaller; so a target out of reach gives the nearest pose, and says so.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
+from scipy.linalg.lapack import dgesdd
 
 from humanwalk.quantity import quantity
 
@@ -67,7 +70,7 @@ class InverseKinematicsParameters:
     max_step: float = quantity(0.5, "rad", 1e-3, 3.2)
     """Longest change of any joint in one step: keeps the linearisation meaningful."""
 
-    @property
+    @cached_property
     def row_weights(self) -> Array:
         """Weights of the six rows of the residual [rotation; position]."""
         return np.repeat((self.orientation_weight, 1.0), 3)
@@ -153,8 +156,11 @@ def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
 
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
-    angle_axis = RotationMatrix(X.rotation() @ X_desired.rotation().inverse()).ToAngleAxis()
-    return np.concatenate((angle_axis.angle() * angle_axis.axis(), X.translation() - X_desired.translation()))
+    angle_axis = (X.rotation() @ X_desired.rotation().inverse()).ToAngleAxis()
+    error = np.empty(6)
+    error[:3] = angle_axis.angle() * angle_axis.axis()
+    error[3:] = X.translation() - X_desired.translation()
+    return error
 
 
 def solve_inverse_kinematics(
@@ -173,13 +179,15 @@ def solve_inverse_kinematics(
 
     Returns:
         The pose found. Joints at the end of their range and a straight leg can stall the iteration short of a pose
-        that is within reach, so one that stalls is tried once more from the middle of the joint ranges.
+        that is within reach, so one that stalls is tried once more with those joints in the middle of their ranges.
     """
     parameters = parameters or InverseKinematicsParameters()
     first, first_cost = _iterate(leg, X_PS_desired, theta_guess, parameters)
     if first.converged:
         return first
-    second, second_cost = _iterate(leg, X_PS_desired, 0.5 * (leg.lower + leg.upper), parameters)
+    at_end = (first.theta <= leg.lower) | (first.theta >= leg.upper)
+    restart = np.where(at_end, 0.5 * (leg.lower + leg.upper), first.theta)
+    second, second_cost = _iterate(leg, X_PS_desired, restart, parameters)
     better = second.converged or second_cost < RESTART_GAIN * first_cost
     return replace(second if better else first, iterations=first.iterations + second.iterations)
 
@@ -194,9 +202,9 @@ def _iterate(
     weight = parameters.row_weights
     theta = np.clip(theta_guess, leg.lower, leg.upper)
     error = pose_error(leg.X_PS(theta), X_PS_desired)
-    cost = float(np.linalg.norm(weight * error))
+    cost = _norm(weight * error)
     iterations, pull = 0, parameters.neutral_pull
-    while np.linalg.norm(error) > parameters.tolerance and iterations < parameters.max_iterations:
+    while _norm(error) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
         J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
         step = _newton_step(leg, theta, J, weight * error, parameters.damping * cost, pull)
@@ -205,7 +213,7 @@ def _iterate(
         for fraction in STEP_FRACTIONS:
             trial = np.clip(theta + fraction * step, leg.lower, leg.upper)
             trial_error = pose_error(leg.X_PS(trial), X_PS_desired)
-            trial_cost = float(np.linalg.norm(weight * trial_error))
+            trial_cost = _norm(weight * trial_error)
             if trial_cost < cost:
                 break
         gain = cost - trial_cost
@@ -215,15 +223,15 @@ def _iterate(
         if gain < STATIONARY_GAIN * cost and not pull:
             break
         pull = 0.0
-    residual = float(np.linalg.norm(error))
+    residual = _norm(error)
     return InverseKinematicsSolution(theta, residual, iterations, residual <= parameters.tolerance), cost
 
 
 def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, damping: float, pull: float) -> Array:
     """Step -J+ error - (1 - J+ J) pull theta of the joints that are free to move, J+ damped; shape (n,)."""
 
-    def step_of(free: Indices) -> Array:
-        U, s, Vt = np.linalg.svd(J[:, free])
+    def step_of(free: Indices | slice) -> Array:
+        U, s, Vt, _ = dgesdd(J[:, free])
         # The tiny constant keeps a posture that is exactly singular from dividing by zero.
         along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
         spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
@@ -233,7 +241,7 @@ def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, dampi
     return _of_free_joints(leg, theta, step_of)
 
 
-def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices], Array]) -> Array:
+def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices | slice], Array]) -> Array:
     """A motion of the joints, shape (n,), in which none at the end of its range moves outward: those are held.
 
     Args:
@@ -241,14 +249,24 @@ def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices]
         theta: joint angles [rad].
         motion: gives the motion of the joints with the given places, when all others are held.
     """
+    result = motion(slice(None))
+    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
+    if not (at_lower | at_upper).any():
+        return result
     free = np.arange(theta.size)
     while True:
-        result = np.zeros(theta.size)
-        result[free] = motion(free)
-        outward = ((theta <= leg.lower) & (result < 0)) | ((theta >= leg.upper) & (result > 0))
+        outward = (at_lower & (result < 0)) | (at_upper & (result > 0))
         if not outward.any():
             return result
         free = np.setdiff1d(free, np.flatnonzero(outward))
+        result = np.zeros(theta.size)
+        if free.size:
+            result[free] = motion(free)
+
+
+def _norm(vector: Array) -> float:
+    """Euclidean norm; numpy's own costs more than all else in it."""
+    return math.sqrt(vector @ vector)
 
 
 def joint_velocity(
@@ -269,8 +287,8 @@ def joint_velocity(
     weight = parameters.row_weights
     J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
 
-    def velocity_of(free: Indices) -> Array:
-        U, s, Vt = np.linalg.svd(J[:, free], full_matrices=False)
+    def velocity_of(free: Indices | slice) -> Array:
+        U, s, Vt, _ = dgesdd(J[:, free], full_matrices=0)
         inverse = s / np.maximum(s, max(parameters.singular_value_floor, RANK_FLOOR)) ** 2
         velocity: Array = (Vt.T * inverse) @ (U.T @ (weight * V_PS_desired))
         return velocity

@@ -79,10 +79,6 @@ class GaitTarget:
     right: FootTarget
     left: FootTarget
 
-    def foot(self, side: Side) -> FootTarget:
-        """Target of one foot."""
-        return self.right if side == "Right" else self.left
-
 
 @dataclass(frozen=True)
 class Footstep:
@@ -142,6 +138,10 @@ class WalkingGait:
         pelvis = self.pelvis(t)
         return GaitTarget(t, pelvis, self._foot("Right", pelvis), self._foot("Left", pelvis))
 
+    def foot(self, side: Side, t: float) -> FootTarget:
+        """Target of one foot at t [s]."""
+        return self._foot(side, self.pelvis(t))
+
     def pelvis(self, t: float) -> PelvisTarget:
         """Target of the pelvis at t [s].
 
@@ -165,6 +165,10 @@ class WalkingGait:
             offset * slope * speed,
             offset * (curvature * speed**2 + slope * acceleration),
         )
+
+    def in_stance(self, side: Side, t: float) -> bool:
+        """Whether a foot should be on the ground at t [s]."""
+        return self._in_stance(side, self.ramp.distance(t))
 
     def phase(self, side: Side, t: float) -> float:
         """Phase of a foot at t [s]; see `FootTarget`."""
@@ -199,13 +203,11 @@ class WalkingGait:
             hump, hump_slope = swing_hump(tau)
             pitch = self.parameters.toe_drop * hump
             pitch_slope = self.parameters.toe_drop * hump_slope / self.start_distance
-            in_stance = d <= 0.0
         else:
             (x, height), slopes = self._cycle.position(phase), self._cycle.derivative(phase)
             x_slope, height_slope = (slope / self.parameters.walked_stride for slope in slopes)
             pitch, pitch_slope = self._cycle.pitch(phase)
             pitch_slope /= self.parameters.walked_stride
-            in_stance = self._cycle.in_stance(phase)
         height_rate = height_slope * pelvis.speed
         return FootTarget(
             position=np.array(
@@ -221,8 +223,13 @@ class WalkingGait:
             pitch=pitch,
             pitch_rate=pitch_slope * pelvis.speed,
             phase=phase,
-            in_stance=in_stance,
+            in_stance=self._in_stance(side, d),
         )
+
+    def _in_stance(self, side: Side, d: float) -> bool:
+        if side == self.first_swing and d < self.start_distance:
+            return d <= 0.0
+        return self._cycle.in_stance(self._phase(side, d))
 
     def _phase(self, side: Side, d: float) -> float:
         # The foot that stands first starts half-way through its stance.

@@ -1,4 +1,4 @@
-"""The command line: humanwalk walk, replay, scenarios, model, diagram."""
+"""The command line: humanwalk walk, replay, plot, scenarios, model, diagram."""
 
 import logging
 import sys
@@ -70,6 +70,26 @@ def replay(
     from humanwalk.run.replay import serve_replay
 
     serve_replay(run, open_browser=browser, console=console)
+
+
+@app.command(epilog="Example: humanwalk plot runs/thesis --only figure_5_08 --only support --format pdf")
+def plot(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    only: Annotated[
+        list[str],
+        typer.Option(metavar="NAME", help="Plot to write, or how its name begins; may be given several times."),
+    ] = [],  # noqa: B006
+    format_: Annotated[str, typer.Option("--format", help="png, svg or pdf.")] = "png",
+) -> None:
+    """Write the plots of a run again, or some of them, or in another format."""
+    from humanwalk.run.folder import Run
+    from humanwalk.run.plots import write_plots
+
+    written = write_plots(Run.open(run), only, format_)
+    for path in written:
+        console.print(f"{path}", soft_wrap=True)
+    if not written:
+        console.print(f"{run}: nothing to draw of what was asked for", soft_wrap=True)
 
 
 @app.command()

@@ -15,8 +15,8 @@ Array = npt.NDArray[np.float64]
 
 
 def _pose(q: Array) -> RigidTransform:
-    """Pose out of a floating base's positions [quaternion wxyz; translation]; the solver keeps |quaternion| near 1."""
-    return RigidTransform(Quaternion(q[:4] / np.linalg.norm(q[:4])), q[4:])
+    """Pose out of a floating base's positions [quaternion wxyz; translation]."""
+    return RigidTransform(Quaternion(q[:4]), q[4:])
 
 
 class BalanceSupport(LeafSystem):

@@ -79,7 +79,7 @@ class GaitSplineSource(LeafSystem):
         )
 
     def _foot(self, context: Context, side: Side) -> FootTarget:
-        return self._gait.target(context.get_time()).foot(side)
+        return self._gait.foot(side, context.get_time())
 
     def _sole_pose(self, foot: FootTarget) -> RigidTransform:
         below_hips = self._hip_height - self._gait.parameters.offset
@@ -103,7 +103,7 @@ class GaitSplineSource(LeafSystem):
         output.SetFromVector([self._gait.phase(side, context.get_time()) for side in SIDES])
 
     def _calc_contact_schedule(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector([float(self._foot(context, side).in_stance) for side in SIDES])
+        output.SetFromVector([float(self._gait.in_stance(side, context.get_time())) for side in SIDES])
 
     def get_sole_pose_output_port(self, side: Side) -> OutputPort:
         """Output X_PRs or X_PLs."""

@@ -104,6 +104,18 @@ def test_derivative_is_the_limit_of_differences(path, phase):
 
 
 @few
+@given(path=paths, drop=st.floats(0.0, 1.2))
+def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path, drop):
+    cycle = FootCycle(replace(path, toe_drop=drop))
+    pitch = np.array([cycle.pitch(phase)[0] for phase in np.linspace(0.0, 1.0, 201)])
+    in_stance = np.linspace(0.0, 1.0, 201) < path.duty_factor
+    np.testing.assert_array_equal(pitch[in_stance], 0.0)
+    assert cycle.pitch(0.5 * (1.0 + path.duty_factor))[0] == pytest.approx(drop)
+    assert np.all((pitch >= 0.0) & (pitch <= drop + 1e-12))
+    assert np.count_nonzero(np.diff(np.sign(np.diff(pitch[~in_stance])))) <= 1
+
+
+@few
 @given(path=paths)
 def test_feet_meet_and_leave_the_ground_without_slip(path):
     """E27: at both ends of swing the foot has the speed of stance, so none over ground."""

@@ -157,6 +157,8 @@ def test_velocities_are_the_limits_of_differences(gait, t):
         np.testing.assert_allclose(foot.velocity, difference, rtol=0, atol=2e-2 * scale)
         rate = (after.height - before.height) / (2 * h)
         assert foot.height_rate == pytest.approx(rate, abs=2e-2 * scale)
+        rate = (after.pitch - before.pitch) / (2 * h)
+        assert foot.pitch_rate == pytest.approx(rate, abs=1e-3)
     pelvis, after, before = now.pelvis, ahead.pelvis, behind.pelvis
     for value, rate in (("distance", "speed"), ("drop", "drop_rate")):
         difference = (getattr(after, value) - getattr(before, value)) / (2 * h)

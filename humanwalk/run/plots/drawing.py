@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -25,7 +26,8 @@ SIDE = SIDE_COLORS
 """Right is blue, left is orange, as on the body."""
 AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
 """World x, y, z in plots of one vector: neither of the two sides' colours."""
-DESIRED = "#202020"
+INK = "#202020"
+DESIRED = "#bdbdbd"
 REFERENCE = "#777777"
 STANCE = "#e9edf2"
 
@@ -47,6 +49,7 @@ def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1,
         axes.tick_params(labelsize=TICK_SIZE)
         axes.grid(True, color="#dddddd", linewidth=0.5)
         axes.set_axisbelow(True)
+        axes.margins(x=0.0)
         axes.spines[["top", "right"]].set_visible(False)
     return figure
 
@@ -78,6 +81,12 @@ def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:
     return line
 
 
+def level(axes: Axes, y: float, text: str | None = None) -> None:
+    """A dashed horizontal line to compare with; one without a text is a plain thin line, like that of zero."""
+    style, width = ("--", 0.9) if text else ("-", 0.5)
+    axes.axhline(y, color=REFERENCE, linestyle=style, linewidth=width, label=text)
+
+
 def shade(axes: Axes, x: Array, where: npt.NDArray[np.bool_], text: str) -> None:
     """Grey bands over the stretches of x where `where` holds."""
     axes.fill_between(
@@ -85,7 +94,13 @@ def shade(axes: Axes, x: Array, where: npt.NDArray[np.bool_], text: str) -> None
     )
 
 
-def save(figure: Figure, path: Path) -> Path:
+def true_proportions(figure: Figure) -> None:
+    """One metre as long sideways as along, in a figure of one axes."""
+    figure.axes[0].set_aspect("equal")
+    figure.set_layout_engine("compressed")
+
+
+def save(figure: Figure, path: Path, dpi: float = DPI) -> Path:
     """Write a figure in the format of the suffix, whole or not at all, without the date; returns the path.
 
     Raises:
@@ -93,5 +108,7 @@ def save(figure: Figure, path: Path) -> Path:
     """
     form = path.suffix.removeprefix(".")
     no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
-    write_whole(path, lambda beside: figure.savefig(beside, format=form, dpi=DPI, metadata=no_date))
+    # The salt, in place of a random one, makes an SVG the same every time.
+    with rc_context({"svg.hashsalt": path.stem}):
+        write_whole(path, lambda beside: figure.savefig(beside, format=form, dpi=dpi, metadata=no_date))
     return path

@@ -11,12 +11,12 @@ from humanwalk.body import REFERENCE_STATURE, SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.run.folder import Run
 from humanwalk.run.measures import CONTACT_ON_N, GRAVITY, foot_contact
-from humanwalk.run.plots.drawing import DESIRED, REFERENCE, SIDE, curve, label, legend, new_figure
+from humanwalk.run.plots.drawing import INK, SIDE, curve, label, legend, level, new_figure, true_proportions
 from humanwalk.run.signals import TIME
 
 LAST_SECONDS = 2.0
 """Stretch of `ground_reaction` [s]: three strides of the thesis' walk."""
-LAST_SECONDS_ABOVE = 1.3
+LAST_SECONDS_ABOVE = 1.2
 """Stretch of `centre_of_pressure` [s]: two strides, which at true proportions still shows the feet."""
 
 
@@ -34,11 +34,12 @@ def ground_reaction(run: Run) -> Figure | None:
         for axes, axis in ((vertical, "z"), (fore_aft, "x")):
             force = run.signals[f"{side.lower()}_foot.force_{axis}_N"].to_numpy()[rows]
             curve(axes, time, force, color=SIDE[side], label=f"{side.lower()} foot")
-    vertical.axhline(weight, color=REFERENCE, linestyle="--", linewidth=0.9, label=f"body weight, {weight:.0f} N")
-    fore_aft.axhline(0.0, color=REFERENCE, linewidth=0.5)
+    level(vertical, weight, f"body weight, {weight:.0f} N")
+    level(fore_aft, 0.0)
     label(vertical, "", "vertical force [N]")
     label(fore_aft, "time [s]", "fore-aft force [N]\nforward positive")
     legend(vertical)
+    figure.align_ylabels()
     return figure
 
 
@@ -49,17 +50,17 @@ def centre_of_pressure(run: Run) -> Figure | None:
     if time.size < 2 or not any(on.any() for on in loaded.values()):
         return None
     figure = new_figure(
-        f"Centre of mass and centres of pressure from above, last {time[-1] - time[0]:.3g} s", height=2.3
+        f"Centre of mass and centres of pressure from above, last {time[-1] - time[0]:.3g} s", height=1.8
     )
     (axes,) = figure.axes
     for side in SIDES:
         _footprints(run, axes, side, rows)
         cop = {axis: run.signals[f"{side.lower()}_foot.cop_{axis}_m"].to_numpy()[loaded[side]] for axis in "xy"}
         axes.plot(
-            cop["x"], cop["y"], ".", markersize=2.5, color=SIDE[side], label=f"centre of pressure, {side.lower()}"
+            cop["x"], cop["y"], ".", markersize=3.5, color=SIDE[side], label=f"centre of pressure, {side.lower()}"
         )
     com = {axis: run.signals[f"com.{axis}_m"].to_numpy()[rows] for axis in "xy"}
-    line = curve(axes, com["x"], com["y"], color=DESIRED, label="centre of mass")
+    line = curve(axes, com["x"], com["y"], color=INK, label="centre of mass")
     dots = [
         Line2D(
             [],
@@ -72,8 +73,9 @@ def centre_of_pressure(run: Run) -> Figure | None:
         )
         for side in SIDES
     ]
-    axes.set_aspect("equal")
-    label(axes, "x [m], forward", "y [m], left")
+    axes.margins(x=0.02)
+    true_proportions(figure)
+    label(axes, "forward x [m]", "left y [m]")
     legend(axes, [line, *dots])
     return figure
 

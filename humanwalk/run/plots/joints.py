@@ -1,5 +1,6 @@
 """All joints at a glance: torques of the legs over one stride, and how well every joint follows its desired angle."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,6 +19,7 @@ from humanwalk.run.plots.drawing import (
     curve,
     label,
     legend,
+    level,
     new_figure,
 )
 from humanwalk.run.signals import TIME
@@ -32,19 +34,24 @@ def joint_torques(run: Run) -> Figure | None:
     figure = new_figure(
         "Torques of the leg joints over the last stride, from touchdown", height=4.6, rows=3, columns=3, sharex=True
     )
-    grid = np.reshape(figure.axes, (3, 3))
-    for axes, motion in zip(grid.flat, motions, strict=True):
-        axes.axhline(0.0, color=REFERENCE, linewidth=0.5)
+    # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
+    width: dict[Side, float] = {"Right": 2.2, "Left": 0.9}
+    for axes, motion in zip(figure.axes, motions, strict=True):
+        level(axes, 0.0)
         for side in SIDES:
             share, torque = _over_stride(run, f"{side}{motion}.torque_N_m", strides[side])
-            curve(axes, share, torque, color=SIDE[side], label=side.lower(), linewidth=1.0)
+            curve(axes, share, torque, color=SIDE[side], label=side.lower(), linewidth=width[side])
         axes.set_title(human().joint(f"Right{motion}").motion, fontsize=LABEL_SIZE, pad=3)
-    for axes in grid[:, 0]:
-        label(axes, "", "torque [N m]")
-    for axes in grid[-1]:
-        label(axes, "stride [%]", axes.get_ylabel())
+    for place, axes in enumerate(figure.axes):
+        label(axes, "stride [%]" if place >= 6 else "", "torque [N m]" if place % 3 == 0 else "")
+    figure.align_ylabels()
     figure.legend(
-        handles=grid[0, 0].get_lines()[1:], loc="upper right", ncols=2, frameon=False, fontsize=TICK_SIZE, borderpad=0.1
+        handles=figure.axes[0].get_lines()[1:],
+        loc="upper right",
+        ncols=2,
+        frameon=False,
+        fontsize=TICK_SIZE,
+        borderpad=0.1,
     )
     return figure
 
@@ -56,13 +63,15 @@ def tracking_error(run: Run) -> Figure | None:
     trunk = [name for name in errors if not name.startswith(SIDES)]
     if not (limbs or trunk):
         return None
-    figure = new_figure("Tracking error in steady walking, rms of desired - actual angle", height=3.6, columns=2)
+    figure = new_figure(
+        "Tracking error in steady walking, rms of desired minus actual angle", height=3.6, columns=2, sharex=True
+    )
     left, right = figure.axes
     for side, shift in zip(SIDES, (-0.2, 0.2), strict=True):
         _bars(left, [errors[f"{side}{name}"] for name in limbs], shift, 0.38, side)
     _ticks(left, [human().joint(f"Right{name}").motion for name in limbs])
     _bars(right, [errors[name] for name in trunk], 0.0, 0.6, None)
-    _ticks(right, [name.removesuffix("_Motion").replace("_", " ") for name in trunk])
+    _ticks(right, [re.sub(r"(?<=\d)_(?=\d)", "–", name.removesuffix("_Motion")).replace("_", " ") for name in trunk])
     legend(left)
     return figure
 

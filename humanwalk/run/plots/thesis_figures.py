@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from humanwalk.body import Side
 from humanwalk.run.folder import Run
 from humanwalk.run.measures import foot_contact
-from humanwalk.run.plots.drawing import DESIRED, REFERENCE, SIDE, Array, curve, label, legend, new_figure, shade
+from humanwalk.run.plots.drawing import DESIRED, SIDE, Array, curve, label, legend, level, new_figure, shade
 from humanwalk.run.signals import TIME
 
 Plot = Callable[[Run], Figure | None]
@@ -59,8 +59,9 @@ def joint_angle(run: Run, number: str, side: Side, motion: str, until: float = i
     angle, desired = (
         np.degrees(run.signals[f"{joint}.{which}"].to_numpy()[rows]) for which in ("angle_rad", "desired_angle_rad")
     )
+    # The two may well be one: the desired angle is a broad band behind the angle.
+    curve(axes, time, desired, color=DESIRED, label="desired", linewidth=3.0 * _width(until))
     curve(axes, time, angle, color=SIDE[side], label="angle", linewidth=_width(until))
-    curve(axes, time, desired, color=DESIRED, label="desired", linestyle=(0, (4, 2)), linewidth=0.7)
     label(axes, TIME_LABEL, f"{name} angle [deg]\n{positive}")
     legend(axes)
     return figure
@@ -94,21 +95,20 @@ def foot_position(run: Run, number: str, side: Side, axis: str) -> Figure | None
         return None
     position = CM_PER_M * run.signals[f"{side.lower()}_sole.{axis}_m"].to_numpy()
     what, axis_label = {
-        "x": ("forward", "x [cm]"),
-        "y": ("sideways", "y [cm], left positive"),
-        "z": ("height", "z [cm]"),
+        "x": ("forward", "forward x [cm]"),
+        "y": ("sideways", "sideways y [cm]\nleft positive"),
+        "z": ("height", "height z [cm]"),
     }[axis]
-    caption = " (captioned Z: erratum E25)" if number == "5.17" else ""
+    caption = " (the thesis captions it Z, erratum E25)" if number == "5.17" else ""
     figure = new_figure(f"Figure {number}  {side} foot {axis.upper()}, {what}{caption}")
     (axes,) = figure.axes
     curve(axes, time, position, color=SIDE[side], linewidth=0.9, label="sole")
-    line = {"color": REFERENCE, "linewidth": 0.9, "linestyle": "--"}
     if axis == "z":
-        axes.axhline(position[0] + FOOT_HEIGHT_CM, **line, label="thesis: about 12 cm (erratum E9)")
+        level(axes, position[0] + FOOT_HEIGHT_CM, "thesis: about 12 cm (erratum E9)")
     if axis == "y":
-        axes.axhline(position[0], color=REFERENCE, linewidth=0.7, label="line on which the foot started")
-        axes.axhline(position[0] - LATERAL_THRESHOLD_CM, **line)
-        axes.axhline(position[0] + LATERAL_THRESHOLD_CM, **line, label="thesis: within ±0.5 cm of it")
+        level(axes, position[0])
+        level(axes, position[0] - LATERAL_THRESHOLD_CM, "thesis: within ±0.5 cm of where it started")
+        level(axes, position[0] + LATERAL_THRESHOLD_CM, "_")
     label(axes, TIME_LABEL, axis_label)
     if axis != "x":
         legend(axes)
@@ -120,7 +120,7 @@ def _stretch(until: float) -> str:
 
 
 def _width(until: float) -> float:
-    return 1.5 if until < inf else 0.9
+    return 1.3 if until < inf else 0.8
 
 
 def _mark_stance(run: Run, figure: Figure, side: Side, rows: npt.NDArray[np.bool_], until: float) -> None:

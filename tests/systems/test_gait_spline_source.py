@@ -1,0 +1,114 @@
+"""Gait spline source: poses in the pelvis frame, their exact rates, and stance feet that stand still in the world."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.control.inverse_kinematics import pose_error
+from humanwalk.systems.gait_spline_source import GaitSplineSource
+
+SIDES = ("Right", "Left")
+STEP = 1e-6
+times = st.floats(0.0, 6.0)
+
+
+@pytest.fixture(scope="module")
+def source(gait, skeleton):
+    return GaitSplineSource(gait, skeleton)
+
+
+@pytest.fixture(scope="module")
+def at(source):
+    """Every output by name at a time [s]; from a new context, since Eval hands out the cache's own objects."""
+
+    def outputs(t):
+        context = source.CreateDefaultContext()
+        context.SetTime(t)
+        return {
+            source.get_output_port(i).get_name(): source.get_output_port(i).Eval(context)
+            for i in range(source.num_output_ports())
+        }
+
+    return outputs
+
+
+def test_ports(source):
+    assert source.num_input_ports() == 0
+    names = {source.get_output_port(i).get_name() for i in range(source.num_output_ports())}
+    assert names == {"X_PRs", "X_PLs", "V_PRs", "V_PLs", "X_WP", "V_WP", "p_WP", "phase", "contact_schedule"}
+    for side in SIDES:
+        assert source.get_sole_pose_output_port(side).get_name() == f"X_P{side[0]}s"
+        assert source.get_sole_velocity_output_port(side).get_name() == f"V_P{side[0]}s"
+    assert source.get_pelvis_pose_output_port().get_name() == "X_WP"
+    assert source.get_pelvis_velocity_output_port().get_name() == "V_WP"
+    assert (source.get_phase_output_port().get_name(), source.get_phase_output_port().size()) == ("phase", 2)
+    assert source.get_contact_schedule_output_port().get_name() == "contact_schedule"
+    assert source.get_contact_schedule_output_port().size() == 2
+
+
+@pytest.mark.parametrize(("pose", "velocity"), [("X_PRs", "V_PRs"), ("X_PLs", "V_PLs"), ("X_WP", "V_WP")])
+@settings(max_examples=200)
+@given(t=times)
+def test_velocities_are_the_rates_of_the_poses(at, gait, pose, velocity, t):
+    behind, ahead = max(t - STEP, 0.0), t + STEP
+    quotient = pose_error(at(ahead)[pose], at(behind)[pose]) / (ahead - behind)
+    # Accelerations stay below 500 in SI units, one of them may begin within the difference.
+    np.testing.assert_allclose(at(t)[velocity].get_coeffs(), quotient, atol=500 * STEP + 1e-6)
+
+
+@pytest.mark.parametrize("t", [0.0, 0.364999, 0.365, 0.365001])
+def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at, t):
+    for name in ("V_PRs", "V_PLs", "V_WP"):
+        before, after = (at(max(t + e, 0.0))[name].get_coeffs() for e in (-STEP, STEP))
+        np.testing.assert_allclose(before, after, atol=1000 * STEP)
+
+
+@settings(max_examples=200)
+@given(t=times)
+def test_a_sole_in_stance_stands_still_and_level_in_the_world(at, gait, t):
+    here = at(t)
+    for i, side in enumerate(SIDES):
+        X_WS = here["X_WP"] @ here[f"X_P{side[0]}s"]
+        if not here["contact_schedule"][i]:
+            assert X_WS.translation()[2] > -1e-9
+            continue
+        landed = max(
+            (s for s in gait.footsteps(t + 1.0) if s.side == side and s.touchdown <= t + 1e-9),
+            key=lambda s: s.touchdown,
+        )
+        np.testing.assert_allclose(X_WS.translation(), landed.position, atol=1e-7)
+        np.testing.assert_allclose(X_WS.rotation().matrix(), np.eye(3), atol=1e-9)
+
+
+@given(t=times)
+def test_stance_is_the_first_part_of_the_phase(at, gait, t):
+    here = at(t)
+    for i, side in enumerate(SIDES):
+        assert 0.0 <= here["phase"][i] < 1.0
+        # The first swing starts from standing: its phase is nominal.
+        if side != gait.first_swing or t >= gait.start_time:
+            assert here["contact_schedule"][i] == float(here["phase"][i] < gait.parameters.duty_factor)
+
+
+@given(t=times)
+def test_feet_are_half_a_cycle_apart_and_one_is_always_down(at, t):
+    here = at(t)
+    right, left = here["phase"]
+    assert (right - left) % 1.0 == pytest.approx(0.5, abs=1e-9)
+    assert here["contact_schedule"].sum() >= 1
+    assert set(here["contact_schedule"]) <= {0.0, 1.0}
+
+
+def test_it_starts_standing_on_both_feet(at, skeleton):
+    start = at(0.0)
+    np.testing.assert_array_equal(start["contact_schedule"], [1, 1])
+    np.testing.assert_allclose(start["X_WP"].translation(), [0, 0, skeleton.hip_height], atol=1e-12)
+    for name in ("V_PRs", "V_PLs", "V_WP"):
+        np.testing.assert_array_equal(start[name].get_coeffs(), 0.0)
+
+
+def test_pelvis_walks_upright_along_x(at, gait):
+    steady = at(4.0)
+    np.testing.assert_allclose(steady["V_WP"].get_coeffs(), [0, 0, 0, gait.ramp.speed, 0, 0])
+    np.testing.assert_array_equal(steady["X_WP"].rotation().matrix(), np.eye(3))

@@ -1,0 +1,232 @@
+"""Inverse kinematics system: solved at the period and nowhere else, shown as state, honest about what it reached."""
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialVelocity
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import LogVectorOutput
+
+from humanwalk.body import LEG_JOINTS, SIDES
+from humanwalk.control.inverse_kinematics import InverseKinematicsParameters, pose_error
+from humanwalk.systems import inverse_kinematics_solver as module
+from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
+
+N = 42
+PERIOD = 0.005
+THETA = np.array([0.4, 0.0, 0.0, 0.8, 0.1, 0.0, 0.0])
+V = np.array([0.0, 0.2, 0.0, 0.3, 0.0, 0.5])
+
+
+@pytest.fixture
+def solver(plant):
+    return InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD)
+
+
+@pytest.fixture
+def places(joints):
+    return {side: [joints.names.index(name) for name in LEG_JOINTS[side]] for side in SIDES}
+
+
+def fixed_context(solver, legs, theta=THETA, V_PS=V):
+    context = solver.CreateDefaultContext()
+    for side in SIDES:
+        solver.get_sole_pose_input_port(side).FixValue(context, Value(legs[side].X_PS(theta)))
+        solver.get_sole_velocity_input_port(side).FixValue(context, Value(SpatialVelocity(V_PS)))
+    return context
+
+
+def initialized(solver, context):
+    simulator = Simulator(solver, context)
+    simulator.Initialize()
+    return simulator
+
+
+@pytest.fixture
+def count_solutions(monkeypatch):
+    times = []
+    solve = module.solve_inverse_kinematics
+
+    def counted(*arguments):
+        times.append(len(times))
+        return solve(*arguments)
+
+    monkeypatch.setattr(module, "solve_inverse_kinematics", counted)
+    return times
+
+
+def test_ports(solver):
+    inputs = [solver.get_input_port(i).get_name() for i in range(solver.num_input_ports())]
+    assert sorted(inputs) == ["V_PLs", "V_PRs", "X_PLs", "X_PRs", "posture"]
+    assert solver.get_posture_input_port().size() == 2 * N
+    for port, name, size in (
+        (solver.get_desired_state_output_port(), "desired_state", 2 * N),
+        (solver.get_sample_time_output_port(), "sample_time", 1),
+        (solver.get_status_output_port(), "status", 6),
+    ):
+        assert (port.get_name(), port.size()) == (name, size)
+    for side in SIDES:
+        assert solver.get_sole_pose_input_port(side).get_name() == f"X_P{side[0]}s"
+        assert solver.get_sole_velocity_input_port(side).get_name() == f"V_P{side[0]}s"
+
+
+def test_initialisation_solves_for_time_zero(solver, legs, places):
+    context = fixed_context(solver, legs)
+    initialized(solver, context)
+    q, _ = np.split(solver.get_desired_state_output_port().Eval(context), 2)
+    for side in SIDES:
+        error = pose_error(legs[side].X_PS(q[places[side]]), legs[side].X_PS(THETA))
+        np.testing.assert_allclose(error, 0.0, atol=1e-6)
+    assert solver.get_sample_time_output_port().Eval(context)[0] == 0.0
+
+
+def test_rates_move_the_soles_as_asked(solver, legs, places):
+    context = fixed_context(solver, legs)
+    initialized(solver, context)
+    q, v = np.split(solver.get_desired_state_output_port().Eval(context), 2)
+    for side in SIDES:
+        J = legs[side].Jv_V_PS(q[places[side]])
+        np.testing.assert_allclose(J @ v[places[side]], V, atol=1e-9)
+
+
+def test_reading_outputs_solves_nothing(solver, legs, count_solutions):
+    context = fixed_context(solver, legs)
+    for port in range(solver.num_output_ports()):
+        solver.get_output_port(port).Eval(context)
+    assert count_solutions == []
+    assert not solver.HasAnyDirectFeedthrough()
+
+
+def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
+    simulator = initialized(solver, fixed_context(solver, legs))
+    at_start = len(count_solutions)
+    sample_time = solver.get_sample_time_output_port()
+    for k in range(1, 5):
+        simulator.AdvanceTo((k + 0.5) * PERIOD)
+        assert sample_time.Eval(simulator.get_context())[0] == pytest.approx(k * PERIOD)
+    # The update due at time zero comes with the first advance.
+    assert len(count_solutions) - at_start == 2 * 5
+
+
+def test_between_updates_nothing_changes(solver, legs):
+    simulator = initialized(solver, fixed_context(solver, legs))
+    simulator.AdvanceTo(1.2 * PERIOD)
+    before = solver.get_desired_state_output_port().Eval(simulator.get_context())
+    simulator.AdvanceTo(1.8 * PERIOD)
+    np.testing.assert_array_equal(solver.get_desired_state_output_port().Eval(simulator.get_context()), before)
+
+
+def test_status_of_a_reached_pose(solver, legs):
+    context = fixed_context(solver, legs)
+    initialized(solver, context)
+    status = solver.get_status_output_port().Eval(context)
+    assert np.all(status[:2] <= 1e-6)
+    assert np.all((1 <= status[2:4]) & (status[2:4] <= 50))
+    np.testing.assert_array_equal(status[4:], [1, 1])
+
+
+def test_a_pose_out_of_reach_is_flagged_for_its_leg_alone(solver, legs, places):
+    context = fixed_context(solver, legs)
+    far = RigidTransform(legs["Left"].X_PS(np.zeros(7)).translation() - [0.0, 0.0, 0.1])
+    solver.get_sole_pose_input_port("Left").FixValue(context, Value(far))
+    simulator = initialized(solver, context)
+    simulator.AdvanceTo(2.5 * PERIOD)
+    status = solver.get_status_output_port().Eval(context)
+    np.testing.assert_array_equal(status[4:], [1, 0])
+    assert status[1] == pytest.approx(0.1, abs=1e-3)
+    desired = solver.get_desired_state_output_port().Eval(context)
+    assert np.all(np.isfinite(desired))
+    error = pose_error(legs["Left"].X_PS(desired[places["Left"]]), far)
+    assert np.linalg.norm(error) == pytest.approx(status[1], abs=1e-9)
+
+
+def test_posture_passes_except_for_the_legs(solver, legs, places):
+    posture = np.arange(2.0 * N) / 100
+    context = fixed_context(solver, legs)
+    initialized(solver, context)
+    alone = solver.get_desired_state_output_port().Eval(context).copy()
+    context = fixed_context(solver, legs)
+    solver.get_posture_input_port().FixValue(context, posture)
+    initialized(solver, context)
+    together = solver.get_desired_state_output_port().Eval(context)
+    in_legs = np.isin(np.arange(N), places["Right"] + places["Left"])
+    for half, start in ((slice(0, N), 0), (slice(N, 2 * N), N)):
+        np.testing.assert_array_equal(together[half][~in_legs], posture[start : start + N][~in_legs])
+        np.testing.assert_array_equal(together[half][in_legs], alone[half][in_legs])
+        np.testing.assert_array_equal(alone[half][~in_legs], 0.0)
+
+
+def test_seed_posture_is_where_the_first_solution_starts(plant, joints):
+    seeded = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, {"RightLegTibiaMotion": 0.7})
+    context = seeded.CreateDefaultContext()
+    q, _ = np.split(seeded.get_desired_state_output_port().Eval(context), 2)
+    assert q[joints.names.index("RightLegTibiaMotion")] == 0.7
+    assert q[joints.names.index("LeftLegTibiaMotion")] == 0.3
+    assert np.count_nonzero(q) == 2
+
+
+def walk(plant, gait, skeleton, period, until):
+    """Times, desired angles, desired rates and status of every solution on the thesis' walk."""
+    builder = DiagramBuilder()
+    source = builder.AddSystem(GaitSplineSource(gait, skeleton))
+    solver = builder.AddSystem(InverseKinematicsSolver(plant, InverseKinematicsParameters(tolerance=1e-9), period))
+    for side in SIDES:
+        builder.Connect(source.get_sole_pose_output_port(side), solver.get_sole_pose_input_port(side))
+        builder.Connect(source.get_sole_velocity_output_port(side), solver.get_sole_velocity_input_port(side))
+    ports = (solver.get_sample_time_output_port(), solver.get_desired_state_output_port(), solver.get_status_output_port())
+    logs = [LogVectorOutput(port, builder, publish_period=period) for port in ports]
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(until)
+    # A row published at an update's time shows the solution before it: the sample time tells which.
+    sample_time, state, status = (log.FindLog(simulator.get_context()).data().T[1:] for log in logs)
+    return sample_time[:, 0], *np.split(state, 2, axis=1), status
+
+
+@pytest.fixture(scope="module")
+def walked(plant, gait, skeleton):
+    return walk(plant, gait, skeleton, 0.002, 1.6)
+
+
+def test_the_thesis_walk_is_within_reach(walked):
+    times, _, _, status = walked
+    # The straight leg of the first 0.1 s falls short by hundredths of a millimetre: the pelvis has hardly sunk yet.
+    assert status[:, :2].max() < 5e-5
+    np.testing.assert_array_equal(status[times > 0.1, 4:], 1.0)
+
+
+def test_angles_of_the_walk_stay_in_their_ranges(walked, joints):
+    _, q, _, _ = walked
+    assert np.all((joints.lower <= q) & (q <= joints.upper))
+
+
+def smallest_singular_value(leg, theta):
+    return np.linalg.svd(InverseKinematicsParameters().row_weights[:, None] * leg.Jv_V_PS(theta))[1][-1]
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_rates_of_the_walk_are_the_differences_of_its_angles(walked, legs, places, side):
+    """Wherever the leg is not so straight that the floor of the singular values slows the rates."""
+    times, q, v = walked[0], walked[1][:, places[side]], walked[2][:, places[side]]
+    h = times[1] - times[0]
+    quotient = (q[2:] - q[:-2]) / (2 * h)
+    error = np.abs(quotient - v[1:-1]).max(axis=1)
+    # A central difference errs by h^2/6 of the third derivative, which third differences estimate; three times that
+    # where an acceleration jumps, at lift-off and touchdown.
+    third = np.abs(np.diff(q, n=3, axis=0)).max(axis=1) / h**3
+    bound = np.array([h**2 / 2 * third[max(k - 3, 0) : k + 3].max() + 1e-3 for k in range(len(quotient))])
+    floor = InverseKinematicsParameters().singular_value_floor
+    regular = np.array([smallest_singular_value(legs[side], theta) > floor for theta in q])
+    regular = regular[:-2] & regular[1:-1] & regular[2:]
+    assert np.all(error[regular] <= bound[regular])
+    # Neither condition lets much pass: nearly the whole walk is looked at, within a hundredth of the fastest rate.
+    assert regular.mean() > 0.9
+    assert np.median(bound[regular]) < 0.01 * np.abs(v).max()
+
+
+def test_a_straight_walk_never_turns_the_legs_sideways(walked, joints):
+    _, q, _, _ = walked
+    sideways = [i for i, name in enumerate(joints.names) if name.endswith(("SideMotion", "TwistMotion", "RollMotion"))]
+    assert np.abs(q[:, sideways]).max() < 1e-3
