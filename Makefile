@@ -14,7 +14,7 @@ walk: .venv/.installed ## Simulate a walk and write its run folder; options go i
 	@$(BIN)/humanwalk walk $(ARGS)
 
 test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
-	@DRAKE_ALLOW_NETWORK=meshcat OMP_NUM_THREADS=1 $(BIN)/pytest $(PYTEST_ARGS)
+	@DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 $(BIN)/pytest $(PYTEST_ARGS)
 
 lint: .venv/.installed ## Check style, types and the import rule
 	$(BIN)/ruff check

@@ -77,7 +77,7 @@ def test_a_slip_of_the_unit_is_recognised(value, unit, high, meant, mended):
 
 @pytest.mark.parametrize("unit", UNIT_SLIPS)
 def test_no_slip_is_guessed_for_a_value_that_is_too_small(unit):
-    with pytest.raises(ParameterError, match="nearest allowed value is 10$"):
+    with pytest.raises(ParameterError, match=r"nearest allowed value is 10$"):
         require_in_range("x", -1.0, unit, 10.0, 1e9)
 
 

@@ -5,30 +5,24 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from pydrake.geometry import (
-    AddContactMaterial,
-    AddRigidHydroelasticProperties,
-    Box,
     CollisionFilterDeclaration,
     GeometrySet,
-    HalfSpace,
-    ProximityProperties,
     SceneGraph,
 )
-from pydrake.math import RigidTransform
 from pydrake.multibody.plant import (
     AddMultibodyPlantSceneGraph,
     ContactModel,
-    CoulombFriction,
     DiscreteContactApproximation,
     MultibodyPlant,
 )
 from pydrake.multibody.tree import JointActuatorIndex, ModelInstanceIndex
 from pydrake.systems.framework import DiagramBuilder
 
-from humanwalk.body.contact import FRICTION, HYDRO_SET, POINT_SET
+from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import joint_gains
+from humanwalk.diagrams.ground import add_level_ground as add_level_ground
 from humanwalk.scenario import Contact, Scenario
 from humanwalk.systems.pd_actuator_bank import install_gains
 
@@ -44,11 +38,6 @@ APPROXIMATIONS = {
     "lagged": DiscreteContactApproximation.kLagged,
     "similar": DiscreteContactApproximation.kSimilar,
 }
-
-GROUND_LENGTH = 60.0
-GROUND_WIDTH = 6.0
-GROUND_BEHIND = 5.0
-"""Size of the ground that is seen [m]; the ground that is stood on has no end."""
 
 
 @dataclass(frozen=True)
@@ -88,34 +77,6 @@ def human_gains(scenario: Scenario) -> tuple[Array, Array]:
     joints = JointMap.of(plant)
     inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
     return joint_gains(joints.names, inertia, scenario.actuators)
-
-
-def add_level_ground(plant: MultibodyPlant, contact: Contact) -> None:
-    """Add a rigid half-space z < 0 with the thesis' friction, and a floor with a line at every metre to look at."""
-    friction = CoulombFriction(FRICTION, FRICTION)
-    properties = ProximityProperties()
-    AddContactMaterial(friction=friction, properties=properties)
-    if contact == "hydroelastic":
-        AddRigidHydroelasticProperties(properties)
-    world = plant.world_body()
-    plant.RegisterCollisionGeometry(world, RigidTransform(), HalfSpace(), "ground", properties)
-    middle = 0.5 * GROUND_LENGTH - GROUND_BEHIND
-    plant.RegisterVisualGeometry(
-        world,
-        RigidTransform([middle, 0.0, -0.026]),
-        Box(GROUND_LENGTH, GROUND_WIDTH, 0.05),
-        "floor",
-        np.array([0.80, 0.81, 0.80, 1.0]),
-    )
-    for metre in range(int(-GROUND_BEHIND) + 1, int(GROUND_LENGTH - GROUND_BEHIND)):
-        wide = 0.03 if metre % 5 == 0 else 0.012
-        plant.RegisterVisualGeometry(
-            world,
-            RigidTransform([float(metre), 0.0, -0.001]),
-            Box(wide, GROUND_WIDTH, 0.002),
-            f"metre_{metre}",
-            np.array([0.55, 0.57, 0.58, 1.0]),
-        )
 
 
 def keep_one_contact_set(plant: MultibodyPlant, scene_graph: SceneGraph, contact: Contact) -> None:

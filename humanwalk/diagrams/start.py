@@ -23,6 +23,9 @@ REACH_SAMPLES = 48
 REACH_TOLERANCE = 0.005
 """How far a sole may stay off its path before the gait counts as unreachable [m]."""
 
+TOE_TOLERANCE = 0.003
+"""How far below the ground the gait may ask the toes to go in swing [m]: what the toe joint gives way to."""
+
 REACH_TOLERANCE_RAD = 0.02
 """How far it may be turned from its path [rad]."""
 
@@ -85,8 +88,16 @@ def require_reachable(scenario: Scenario) -> None:
     side = SIDES[0]
     leg = LegKinematics(plant, "Pelvis", f"{side}Leg_Sole", LEG_JOINTS[side])
     theta = 0.5 * (leg.lower + leg.upper)
+    toe = max(sphere.center[0] + skeleton.origins[sphere.body][0] for sphere in contact_spheres(skeleton))
     for phase in np.arange(REACH_SAMPLES) / REACH_SAMPLES:
         x, z = cycle.position(float(phase))
+        clearance = z - toe * np.sin(cycle.pitch(float(phase))[0])
+        if clearance < -TOE_TOLERANCE:
+            raise ParameterError(
+                f"gait.path.toe_drop: {path.toe_drop:g} puts the toes {-100 * clearance:.1f} cm into the ground at phase "
+                f"{phase:.2f}; allowed with step_height {path.step_height:g}: 0 to about "
+                f"{0.8 * np.arcsin(min(1.0, path.step_height / toe)):.2f} rad; lower it, or lift the foot higher"
+            )
         X_PS = RigidTransform(
             RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0]),
             [x - 0.5 * path.step_length, -skeleton.hip_half_width, z - below_hips],

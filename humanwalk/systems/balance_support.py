@@ -1,5 +1,7 @@
 """LeafSystem: the balance that the thesis assumes, made visible as a force on the pelvis."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from pydrake.common.eigen_geometry import Quaternion
@@ -15,8 +17,9 @@ Array = npt.NDArray[np.float64]
 
 
 def _pose(q: Array) -> RigidTransform:
-    """Pose out of a floating base's positions [quaternion wxyz; translation]."""
-    return RigidTransform(Quaternion(q[:4]), q[4:])
+    """Pose out of a floating base's positions [quaternion wxyz; translation]; Drake lets its norm drift."""
+    wxyz = q[:4]
+    return RigidTransform(Quaternion(wxyz / math.sqrt(wxyz @ wxyz)), q[4:])
 
 
 class BalanceSupport(LeafSystem):

@@ -190,7 +190,10 @@ def require_stable(plant: MultibodyPlant, kp: Array, kd: Array) -> None:
     order = np.concatenate((np.setdiff1d(np.arange(M.shape[0]), joints.v), joints.v))
     stable = largest_stable_step(M[np.ix_(order, order)], kp, kd)
     if plant.time_step() > stable:
+        # Rounded down, so that the step that is named is one that is accepted.
+        digit = 10.0 ** (np.floor(np.log10(stable)) - 1)
+        named = digit * np.floor(stable / digit)
         raise ParameterError(
             f"actuators.law: explicit is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
-            f"{stable:.2g} s with these gains; use law: implicit, softer gains, or that step"
+            f"{named:.2g} s with these gains; use law: implicit, softer gains, or that step"
         )

@@ -16,7 +16,7 @@ loads = st.floats(2.0, 2000.0)
 @given(x=places, y=places, height=heights, fx=pushes, fy=pushes, fz=loads, spin=st.floats(-50.0, 50.0))
 def test_centre_of_pressure_and_free_moment_of_a_known_wrench(x, y, height, fx, fy, fz, spin):
     p, f = np.array([x, y, height]), np.array([fx, fy, fz])
-    foot = foot_force(f, np.cross(p, f) + [0.0, 0.0, spin], height)
+    foot = foot_force(f, np.cross(p, f) + np.array([0.0, 0.0, spin]), height)
     assert foot.loaded
     np.testing.assert_array_equal(foot.f_W, f)
     np.testing.assert_allclose(foot.p_WCop, p, atol=1e-9)

@@ -152,9 +152,7 @@ def test_a_straight_knee_bends_towards_a_nearer_target(legs, side, knee):
 @pytest.mark.parametrize("knee", [0.0, 0.02, 0.5, 1.5])
 def test_a_fully_stretched_target_is_reached(legs, side, knee):
     leg = legs[side]
-    solution = solve_inverse_kinematics(
-        leg, leg.X_PS(STRAIGHT), STRAIGHT + np.array([0.5 * knee, 0, 0, knee, 0, 0, 0])
-    )
+    solution = solve_inverse_kinematics(leg, leg.X_PS(STRAIGHT), STRAIGHT + np.array([0.5 * knee, 0, 0, knee, 0, 0, 0]))
     assert solution.residual < 1e-5
     # The reach falls short by the square of the knee's angle, so the angle is the root of a tiny residual.
     assert solution.theta[KNEE] < 0.02

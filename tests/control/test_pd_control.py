@@ -88,7 +88,7 @@ def test_gains_for_no_joint_of_the_body_are_refused_with_the_nearest_name(joints
 
 
 def test_a_joint_without_preset_is_named():
-    with pytest.raises(ParameterError, match="^Tail: no preset stiffness"):
+    with pytest.raises(ParameterError, match=r"^Tail: no preset stiffness"):
         preset_stiffness("Tail")
 
 

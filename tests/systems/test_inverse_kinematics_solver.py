@@ -124,7 +124,7 @@ def test_status_of_a_reached_pose(solver, legs):
     initialized(solver, context)
     status = solver.get_status_output_port().Eval(context)
     assert np.all(status[:2] <= 1e-6)
-    assert np.all((1 <= status[2:4]) & (status[2:4] <= 50))
+    assert np.all((status[2:4] >= 1) & (status[2:4] <= 50))
     np.testing.assert_array_equal(status[4:], [1, 1])
 
 
@@ -176,7 +176,11 @@ def walk(plant, gait, skeleton, period, until):
     for side in SIDES:
         builder.Connect(source.get_sole_pose_output_port(side), solver.get_sole_pose_input_port(side))
         builder.Connect(source.get_sole_velocity_output_port(side), solver.get_sole_velocity_input_port(side))
-    ports = (solver.get_sample_time_output_port(), solver.get_desired_state_output_port(), solver.get_status_output_port())
+    ports = (
+        solver.get_sample_time_output_port(),
+        solver.get_desired_state_output_port(),
+        solver.get_status_output_port(),
+    )
     logs = [LogVectorOutput(port, builder, publish_period=period) for port in ports]
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(until)

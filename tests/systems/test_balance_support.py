@@ -1,0 +1,109 @@
+"""Assumed balance as a system: its wrench is the force on the pelvis, which gives way by force over stiffness."""
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.multibody.math import SpatialVelocity
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.multibody.tree import SpatialInertia, UnitInertia
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantValueSource
+
+from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+from humanwalk.systems.balance_support import BalanceSupport
+
+PARAMETERS = BalanceSupportParameters()
+X_REFERENCE = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [1.0, 0.5, 0.9])
+V_REFERENCE = np.array([0.1, 0.2, 0.3, 1.4, 0.0, -0.1])
+
+
+@pytest.fixture(scope="module")
+def support(plant):
+    return BalanceSupport(plant, PARAMETERS)
+
+
+def context_of(support, plant, X_WP, V_WP):
+    plant_context = plant.CreateDefaultContext()
+    pelvis = plant.GetBodyByName("Pelvis")
+    plant.SetFloatingBaseBodyPoseInWorldFrame(plant_context, pelvis, X_WP)
+    v = plant.GetVelocities(plant_context)
+    start = pelvis.floating_velocities_start_in_v()
+    v[start : start + 6] = V_WP
+    plant.SetVelocities(plant_context, v)
+    context = support.CreateDefaultContext()
+    support.get_reference_pose_input_port().FixValue(context, Value(X_REFERENCE))
+    support.get_reference_velocity_input_port().FixValue(context, Value(SpatialVelocity(V_REFERENCE)))
+    support.get_state_input_port().FixValue(context, plant.GetPositionsAndVelocities(plant_context))
+    return context
+
+
+def test_ports(support, plant):
+    names = [support.get_input_port(i).get_name() for i in range(support.num_input_ports())]
+    assert sorted(names) == ["V_WP", "X_WP", "state"]
+    assert support.get_reference_pose_input_port().get_name() == "X_WP"
+    assert support.get_reference_velocity_input_port().get_name() == "V_WP"
+    assert support.get_state_input_port().size() == plant.num_multibody_states()
+    port = support.get_wrench_output_port()
+    assert (port.get_name(), port.size()) == ("wrench", 6)
+    assert support.get_spatial_forces_output_port().get_name() == "spatial_forces"
+
+
+def test_no_wrench_on_the_reference(support, plant):
+    context = context_of(support, plant, X_REFERENCE, V_REFERENCE)
+    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), 0.0, atol=1e-9)
+
+
+def test_the_wrench_is_the_law_of_the_pelvis_state(support, plant):
+    X_WP = RigidTransform(RollPitchYaw(0.05, 0.25, 0.2), [1.02, 0.49, 0.93])
+    V_WP = np.array([0.3, -0.2, 0.1, 1.2, 0.2, 0.0])
+    expected = support_wrench(X_WP, V_WP, X_REFERENCE, V_REFERENCE, PARAMETERS)
+    context = context_of(support, plant, X_WP, V_WP)
+    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), expected, rtol=1e-9)
+
+
+def test_the_wrench_shown_is_the_force_on_the_pelvis_at_its_origin(support, plant):
+    context = context_of(support, plant, RigidTransform([1.1, 0.4, 1.0]), np.zeros(6))
+    (force,) = support.get_spatial_forces_output_port().Eval(context)
+    assert force.body_index == plant.GetBodyByName("Pelvis").index()
+    np.testing.assert_array_equal(force.p_BoBq_B, 0.0)
+    np.testing.assert_array_equal(force.F_Bq_W.get_coeffs(), support.get_wrench_output_port().Eval(context))
+
+
+def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
+    context = context_of(support, plant, RigidTransform([1.1, 0.4, 1.0]), np.zeros(6))
+    expected = support.get_wrench_output_port().Eval(context)
+    state = support.get_state_input_port().Eval(context)
+    start = plant.GetBodyByName("Pelvis").floating_positions_start()
+    state[start : start + 4] *= 1.0001
+    support.get_state_input_port().FixValue(context, state)
+    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), expected, rtol=1e-9)
+
+
+def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
+    """A block of the body's mass as the pelvis, its centre of mass off its origin, so that it turns as well."""
+    mass, arm = 70.0, 0.02
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.001)
+    pelvis = plant.AddRigidBody(
+        "Pelvis", SpatialInertia.MakeFromCentralInertia(mass, [arm, 0, 0], mass * UnitInertia.SolidBox(1.0, 1.0, 1.0))
+    )
+    plant.Finalize()
+    support = builder.AddSystem(BalanceSupport(plant, PARAMETERS))
+    for value, port in (
+        (RigidTransform(), support.get_reference_pose_input_port()),
+        (SpatialVelocity.Zero(), support.get_reference_velocity_input_port()),
+    ):
+        source = builder.AddSystem(ConstantValueSource(Value(value)))
+        builder.Connect(source.get_output_port(), port)
+    builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
+    builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(1.5)
+    X_WP = plant.EvalBodyPoseInWorld(plant.GetMyContextFromRoot(simulator.get_context()), pelvis)
+    weight = mass * 9.81
+    np.testing.assert_allclose(X_WP.translation(), [0, 0, -weight / PARAMETERS.stiffness], atol=1e-7)
+    # The weight acts in front of the origin: nose down, positive about y.
+    pitch = weight * arm / PARAMETERS.rotational_stiffness
+    np.testing.assert_allclose(X_WP.rotation().matrix(), RotationMatrix.MakeYRotation(pitch).matrix(), atol=1e-6)

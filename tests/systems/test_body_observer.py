@@ -1,0 +1,82 @@
+"""Body observer: the soles and the centre of mass of the state that is fed in."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.systems.body_observer import BodyObserver
+
+seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
+
+
+@pytest.fixture(scope="module")
+def observer(plant):
+    return BodyObserver(plant)
+
+
+@pytest.fixture(scope="module")
+def observed(observer):
+    """(soles, com) of a plant state."""
+
+    def outputs(state):
+        context = observer.CreateDefaultContext()
+        observer.get_state_input_port().FixValue(context, state)
+        return (
+            observer.get_soles_output_port().Eval(context),
+            observer.get_com_output_port().Eval(context),
+        )
+
+    return outputs
+
+
+def random_state(plant, rng):
+    q = plant.GetPositions(plant.CreateDefaultContext())
+    q[:4] = rng.normal(size=4)
+    q[:4] /= np.linalg.norm(q[:4])
+    q[4:] += rng.normal(scale=0.3, size=q.size - 4)
+    return q, rng.normal(size=plant.num_velocities())
+
+
+def test_ports(observer, plant):
+    assert observer.num_input_ports() == 1
+    assert observer.get_state_input_port().get_name() == "state"
+    assert observer.get_state_input_port().size() == plant.num_multibody_states()
+    for port, name in ((observer.get_soles_output_port(), "soles"), (observer.get_com_output_port(), "com")):
+        assert (port.get_name(), port.size()) == (name, 6)
+
+
+def test_neutral_standing_is_the_skeletons(observed, plant, skeleton):
+    soles, com = observed(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
+    width = skeleton.hip_half_width
+    np.testing.assert_allclose(soles, [0, -width, 0, 0, width, 0], atol=1e-9)
+    np.testing.assert_allclose(com[:3], skeleton.com, atol=1e-6)
+    np.testing.assert_array_equal(com[3:], 0.0)
+
+
+@settings(max_examples=25)
+@given(rng=seeds)
+def test_com_velocity_is_the_rate_of_its_position(observed, plant, rng):
+    q, v = random_state(plant, rng)
+    h = 1e-6
+    q_rate = plant.MapVelocityToQDot(_at(plant, q), v)
+    ahead, behind = (observed(np.concatenate((q + s * h * q_rate, v)))[1][:3] for s in (1, -1))
+    np.testing.assert_allclose(observed(np.concatenate((q, v)))[1][3:], (ahead - behind) / (2 * h), atol=1e-6)
+
+
+def _at(plant, q):
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, q)
+    return context
+
+
+@given(rng=seeds, shift=st.tuples(*[st.floats(-5, 5)] * 3))
+@settings(max_examples=25)
+def test_a_body_that_is_carried_elsewhere_carries_its_points(observed, plant, rng, shift):
+    q, v = random_state(plant, rng)
+    moved = q.copy()
+    moved[4:7] += shift
+    soles, com = observed(np.concatenate((q, v)))
+    soles_there, com_there = observed(np.concatenate((moved, v)))
+    np.testing.assert_allclose(soles_there, soles + np.tile(shift, 2), atol=1e-9)
+    np.testing.assert_allclose(com_there, com + np.concatenate((shift, np.zeros(3))), atol=1e-9)

@@ -1,0 +1,98 @@
+"""Foot force observer: in quiet standing the feet carry the weight within their soles, in the air nothing."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.multibody.plant import ContactResults
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource
+
+from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.scenario import Scenario, SimulationParameters
+from humanwalk.systems.foot_force_observer import FootForceObserver
+
+N = 42
+SCENARIO = Scenario(simulation=SimulationParameters(time_step=0.002))
+
+
+def standing(contact, lift=0.0, duration=1.0):
+    """Feet (2, 8) of the stiff human after some time on level ground, the plant's weight and the pelvis' motion."""
+    builder = DiagramBuilder()
+    human = add_human_plant(builder, dataclasses.replace(SCENARIO, contact=contact))
+    plant = human.plant
+    observer = builder.AddSystem(FootForceObserver(plant, human.scene_graph.model_inspector()))
+    builder.Connect(plant.get_contact_results_output_port(), observer.get_contact_results_input_port())
+    desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
+    builder.Connect(desired.get_output_port(), plant.get_desired_state_input_port(human.instance))
+    simulator = Simulator(builder.Build())
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    pelvis = plant.GetBodyByName("Pelvis")
+    q = plant.GetPositions(context)
+    q[pelvis.floating_positions_start() + 6] += lift
+    plant.SetPositions(context, q)
+    simulator.AdvanceTo(duration)
+    forces = observer.get_foot_forces_output_port().Eval(observer.GetMyContextFromRoot(simulator.get_context()))
+    soles = [plant.GetFrameByName(f"{side}Leg_Sole").CalcPoseInWorld(context) for side in ("Right", "Left")]
+    return forces.reshape(2, 8), plant.CalcTotalMass(context) * 9.81, soles, plant.GetVelocities(context)
+
+
+@pytest.fixture(scope="module", params=["point", "hydroelastic"])
+def stood(request):
+    return standing(request.param)
+
+
+def test_ports(plant):
+    builder = DiagramBuilder()
+    human = add_human_plant(builder, SCENARIO)
+    observer = FootForceObserver(human.plant, human.scene_graph.model_inspector())
+    assert observer.num_input_ports() == 1
+    assert observer.get_contact_results_input_port().get_name() == "contact_results"
+    port = observer.get_foot_forces_output_port()
+    assert (port.get_name(), port.size()) == ("foot_forces", 16)
+    context = observer.CreateDefaultContext()
+    observer.get_contact_results_input_port().FixValue(context, Value(ContactResults()))
+    np.testing.assert_array_equal(port.Eval(context), 0.0)
+
+
+def test_the_feet_carry_the_weight(stood):
+    feet, weight, _, velocities = stood
+    assert np.abs(velocities).max() < 0.05
+    assert feet[:, 2].sum() == pytest.approx(weight, rel=0.01)
+    np.testing.assert_array_equal(feet[:, 7], 1.0)
+
+
+def test_a_symmetric_body_loads_both_feet_alike(stood):
+    feet, weight, _, _ = stood
+    right, left = feet
+    assert right[2] == pytest.approx(left[2], rel=0.01)
+    assert right[1] == pytest.approx(-left[1], abs=0.01 * weight)
+    assert right[3] == pytest.approx(left[3], abs=0.002)
+    assert right[4] == pytest.approx(-left[4], abs=0.002)
+
+
+def test_the_centre_of_pressure_lies_within_each_sole(stood):
+    feet, _, soles, _ = stood
+    back, front = SOLE_PARTS[0].x[0], SOLE_PARTS[-1].x[1]
+    half_width = max(part.width for part in SOLE_PARTS) / 2
+    for foot, X_WS in zip(feet, soles, strict=True):
+        x, y, _ = X_WS.inverse().multiply(foot[3:6])
+        assert back < x < front
+        assert abs(y) < half_width
+        assert foot[5] == 0.0
+
+
+def test_the_centres_of_pressure_balance_the_body(stood, skeleton):
+    """At rest the weight's line of action goes through their mean."""
+    feet, _, _, _ = stood
+    middle = np.average(feet[:, 3:5], axis=0, weights=feet[:, 2])
+    np.testing.assert_allclose(middle, skeleton.com[:2], atol=0.01)
+
+
+@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+def test_in_the_air_everything_is_zero(contact):
+    feet, *_ = standing(contact, lift=0.3, duration=0.01)
+    np.testing.assert_array_equal(feet, 0.0)
