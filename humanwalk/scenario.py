@@ -30,7 +30,7 @@ from humanwalk.control.pd_control import ActuatorParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
-from humanwalk.quantity import ParameterError, check, quantity
+from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
 Contact = Literal["point", "hydroelastic"]
 
@@ -121,7 +121,7 @@ class Scenario:
     duration: float = quantity(15.0, "s", 0.001, 3600.0)
     """Simulated time; the thesis runs 15 s."""
 
-    seed: int = 0
+    seed: int = quantity(0, "", 0, 2**32 - 1)
     """Of everything random."""
 
     contact: Contact = "point"
@@ -145,6 +145,8 @@ class Scenario:
             ParameterError: with the field, the value, the allowed range and a mend, in one line.
         """
         check(self)
+        for name, angle in self.start.joint_angles.items():
+            require_in_range(f"start.joint_angles.{name}", angle, "rad", -math.pi, math.pi)
         simulation = self.simulation
         if simulation.integrator == "cenic" and simulation.time_step != 0:
             raise ParameterError(
@@ -199,13 +201,15 @@ def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: 
 
 def dump_scenario(scenario: Scenario) -> str:
     """The complete scenario as YAML, every field written out; `parse_scenario` reads it back to an equal one."""
-    return yaml_dump(dataclasses.asdict(scenario))
+    text: str = yaml_dump(dataclasses.asdict(scenario))
+    return text
 
 
 def _read_yaml(text: str, name: str) -> dict[str, Any]:
     try:
         data = yaml_load(data=text, private=True) if text.strip() else {}
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, AttributeError, RecursionError) as error:
+        # PyYAML lets an AttributeError out of a bad !!timestamp.
         mark = getattr(error, "problem_mark", None)
         where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         problem = getattr(error, "problem", None) or "cannot be read"
@@ -244,14 +248,18 @@ def _build(kind: Any, value: Any, path: str) -> Any:
         choices = typing.get_args(kind)
         if value not in choices:
             raise ParameterError(
-                f"{path}: {value!r} is unknown; allowed: {', '.join(choices)}{_did_you_mean(value, choices)}"
+                f"{path}: {_shown(value)} is unknown; allowed: {', '.join(choices)}"
+                f"{_did_you_mean(_shown(value), choices)}"
             )
         return value
     if origin in (dict, Mapping):
         item = typing.get_args(kind)[1]
         if not isinstance(value, dict):
             raise ParameterError(f"{path}: {_shown(value)} is no mapping; allowed: name: value pairs")
-        return {str(key): _build(item, entry, f"{path}.{key}") for key, entry in value.items()}
+        for key in value:
+            if not (isinstance(key, str) and key.isprintable()):
+                raise ParameterError(f"{path}: {_shown(key)} is no name; allowed: name: value pairs")
+        return {key: _build(item, entry, f"{path}.{key}") for key, entry in value.items()}
     return _build_scalar(kind, value, path)
 
 
@@ -265,9 +273,10 @@ def _build_dataclass(kind: Any, value: Any, path: str) -> Any:
     names = [f.name for f in dataclasses.fields(kind)]
     arguments = {}
     for key, entry in value.items():
-        name = f"{path}.{key}" if path else str(key)
+        shown = key if isinstance(key, str) and key.isprintable() else _shown(key)
+        name = f"{path}.{shown}" if path else shown
         if key not in names:
-            raise ParameterError(f"{name}: no such field; allowed: {', '.join(names)}{_did_you_mean(key, names)}")
+            raise ParameterError(f"{name}: no such field; allowed: {', '.join(names)}{_did_you_mean(shown, names)}")
         arguments[key] = _build(hints[key], entry, name)
     try:
         return kind(**arguments)
@@ -277,11 +286,10 @@ def _build_dataclass(kind: Any, value: Any, path: str) -> Any:
 
 def _build_scalar(kind: Any, value: Any, path: str) -> Any:
     wanted = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}[kind]
+    if isinstance(value, int) and value.bit_length() > 64:
+        raise ParameterError(f"{path}: {_shown(value)} is out of range; write a smaller number")
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
-        try:
-            return float(value)
-        except OverflowError:
-            value = math.inf
+        return float(value)
     if kind is float and isinstance(value, str):
         # YAML 1.1 reads 1e-3 as text: it wants 1.0e-3.
         try:
@@ -294,10 +302,13 @@ def _build_scalar(kind: Any, value: Any, path: str) -> Any:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:
+        return "a number of too many digits"  # Python refuses to write it
     return text if len(text) <= 40 else text[:37] + "..."
 
 
-def _did_you_mean(value: Any, choices: typing.Sequence[str]) -> str:
-    near = difflib.get_close_matches(str(value), choices, n=1, cutoff=0.5)
+def _did_you_mean(text: str, choices: typing.Sequence[str]) -> str:
+    near = difflib.get_close_matches(text, choices, n=1, cutoff=0.5)
     return f"; did you mean {near[0]}?" if near else ""

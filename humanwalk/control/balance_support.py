@@ -8,6 +8,7 @@ import numpy.typing as npt
 from pydrake.math import RigidTransform
 
 from humanwalk.control.inverse_kinematics import pose_error
+from humanwalk.control.stability import largest_stable_step
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
@@ -20,16 +21,16 @@ class BalanceSupportParameters:
     enabled: bool = True
     """Whether the support acts at all."""
 
-    stiffness: float = quantity(30000.0, "N/m", 0.0, 1e6)
+    stiffness: float = quantity(50000.0, "N/m", 0.0, 1e6)
     """Force per displacement of the pelvis."""
 
-    damping: float = quantity(2500.0, "N s/m", 0.0, 1e5)
-    """Force per velocity error: 0.86 of critical for 70 kg."""
+    damping: float = quantity(3300.0, "N s/m", 0.0, 1e5)
+    """Force per velocity error: 0.88 of critical for 70 kg."""
 
-    rotational_stiffness: float = quantity(10000.0, "N m/rad", 0.0, 1e5)
+    rotational_stiffness: float = quantity(30000.0, "N m/rad", 0.0, 1e5)
     """Torque per rotation of the pelvis."""
 
-    rotational_damping: float = quantity(400.0, "N m s/rad", 0.0, 1e4)
+    rotational_damping: float = quantity(300.0, "N m s/rad", 0.0, 1e4)
     """Torque per angular-velocity error."""
 
     @cached_property
@@ -58,3 +59,31 @@ def support_wrench(
     K, D = parameters.diagonals
     wrench: Array = -K * pose_error(X_WP, X_WPref) - D * (V_WP - V_WPref)
     return wrench
+
+
+def largest_support_step(
+    M: Array, kp: Array, kd: Array, parameters: BalanceSupportParameters, upper: float = 0.1
+) -> float:
+    """Largest step [s] at which the support, which acts explicitly, is stable on a body with implicit joint PD.
+
+    Linearised at rest: (M + h kd + h^2 kp) v' = M v - h (support + kp q), q' = q + h v'.
+
+    Args:
+        M: mass matrix, shape (6 + n, 6 + n), the pelvis' rows [rotation; translation] first.
+        kp, kd: gains of the n joints.
+        parameters: the support.
+        upper: step beyond which nothing is looked for [s].
+    """
+    m = M.shape[0]
+    K_support, D_support = np.zeros(m), np.zeros(m)
+    K_support[:6], D_support[:6] = parameters.diagonals
+    K_joints, D_joints = (np.concatenate((np.zeros(6), gain)) for gain in (kp, kd))
+    eye = np.eye(m)
+
+    def update(h: float) -> Array:
+        solved = np.linalg.inv(M + np.diag(h * D_joints + h * h * K_joints))
+        v_of_v = solved @ (M - h * np.diag(D_support))
+        v_of_q = -h * solved @ np.diag(K_support + K_joints)
+        return np.block([[eye + h * v_of_q, h * v_of_v], [v_of_q, v_of_v]])
+
+    return largest_stable_step(update, upper)

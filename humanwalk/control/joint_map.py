@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
+from pydrake.systems.framework import Context
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
@@ -59,3 +60,11 @@ class JointMap:
         """Joint velocities [rad/s] out of a plant state [q; v], shape (n,)."""
         rates: Array = state[self.num_positions + self.v]
         return rates
+
+
+def base_first_mass_matrix(plant: MultibodyPlant, context: Context) -> Array:
+    """Mass matrix with the floating base's rows first, then the joints in actuator order; shape (6 + n, 6 + n)."""
+    M = plant.CalcMassMatrix(context)
+    joints = JointMap.of(plant)
+    order = np.concatenate((np.setdiff1d(np.arange(M.shape[0]), joints.v), joints.v))
+    return np.asarray(M[np.ix_(order, order)])

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from humanwalk.control.stability import largest_stable_step
 from humanwalk.quantity import ParameterError, quantity
 
 Array = npt.NDArray[np.float64]
@@ -115,11 +116,10 @@ def preset_stiffness(joint_name: str) -> float:
     raise ParameterError(f"{joint_name}: no preset stiffness; give its gains in actuators.gains")
 
 
-def largest_stable_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> float:
+def largest_explicit_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> float:
     """Largest step [s] at which the explicit law is stable, linearised at rest.
 
-    The plant's discrete update is v' = v + h M^-1 tau(q, v), q' = q + h v'. It is stable while every eigenvalue
-    of that map lies in the unit disc; eigenvalues at 1 belong to the free motion of the floating base.
+    The plant's discrete update is v' = v + h M^-1 tau(q, v), q' = q + h v'.
 
     Args:
         M: mass matrix, shape (m, m), floating base first; its last n rows are the joints.
@@ -130,15 +130,4 @@ def largest_stable_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> f
     inverse = np.linalg.inv(M)[:, m - n :]
     K, D = inverse[m - n :] * kp, inverse[m - n :] * kd
     eye = np.eye(n)
-
-    def is_stable(h: float) -> bool:
-        step = np.block([[eye - h * h * K, h * (eye - h * D)], [-h * K, eye - h * D]])
-        return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-9)
-
-    low, high = 1e-7, upper
-    if is_stable(high):
-        return high
-    while high / low > 1.01:
-        middle = float(np.sqrt(low * high))
-        low, high = (middle, high) if is_stable(middle) else (low, middle)
-    return low
+    return largest_stable_step(lambda h: np.block([[eye - h * h * K, h * (eye - h * D)], [-h * K, eye - h * D]]), upper)

@@ -35,7 +35,7 @@ def add_level_ground(plant: MultibodyPlant, contact: Contact) -> None:
 def _add_floor(plant: MultibodyPlant) -> None:
     def add(name: str, x: float, y: float, length: float, width: float, top: float, color: np.ndarray) -> None:
         thickness = 0.02
-        X_WG = RigidTransform([x, y, top - 0.5 * thickness])
+        X_WG = RigidTransform(np.array([x, y, top - 0.5 * thickness]))
         plant.RegisterVisualGeometry(plant.world_body(), X_WG, Box(length, width, thickness), name, color)
 
     middle = 0.5 * LENGTH - BEHIND

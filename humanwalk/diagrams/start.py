@@ -64,7 +64,7 @@ def start_positions(scenario: Scenario) -> Array:
     q[joints.q] = theta
     plant.SetPositions(context, q)
     lowest = min(
-        plant.GetBodyByName(sphere.body).EvalPoseInWorld(context).multiply(sphere.center)[2] - sphere.radius
+        (plant.GetBodyByName(sphere.body).EvalPoseInWorld(context) @ np.array(sphere.center))[2] - sphere.radius
         for sphere in contact_spheres(scenario.subject.skeleton)
     )
     pelvis = plant.GetBodyByName("Pelvis")
@@ -94,13 +94,13 @@ def require_reachable(scenario: Scenario) -> None:
         clearance = z - toe * np.sin(cycle.pitch(float(phase))[0])
         if clearance < -TOE_TOLERANCE:
             raise ParameterError(
-                f"gait.path.toe_drop: {path.toe_drop:g} puts the toes {-100 * clearance:.1f} cm into the ground at phase "
-                f"{phase:.2f}; allowed with step_height {path.step_height:g}: 0 to about "
+                f"gait.path.toe_drop: {path.toe_drop:g} puts the toes {-100 * clearance:.1f} cm into the ground "
+                f"at phase {phase:.2f}; allowed with step_height {path.step_height:g}: 0 to about "
                 f"{0.8 * np.arcsin(min(1.0, path.step_height / toe)):.2f} rad; lower it, or lift the foot higher"
             )
         X_PS = RigidTransform(
             RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0]),
-            [x - 0.5 * path.step_length, -skeleton.hip_half_width, z - below_hips],
+            np.array([x - 0.5 * path.step_length, -skeleton.hip_half_width, z - below_hips]),
         )
         solution = solve_inverse_kinematics(leg, X_PS, theta, scenario.inverse_kinematics)
         theta = solution.theta

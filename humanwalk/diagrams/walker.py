@@ -4,9 +4,13 @@ from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from humanwalk.body import SIDES
-from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.control.balance_support import largest_support_step
+from humanwalk.control.joint_map import base_first_mass_matrix
+from humanwalk.control.stability import round_down
+from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
 from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable, start_positions
+from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
@@ -93,6 +97,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         )
 
     if scenario.balance.support.enabled:
+        _require_stable_support(human, scenario)
         support = builder.AddNamedSystem("support", BalanceSupport(plant, scenario.balance.support))
         builder.Connect(gait.get_pelvis_pose_output_port(), support.get_reference_pose_input_port())
         builder.Connect(gait.get_pelvis_velocity_output_port(), support.get_reference_velocity_input_port())
@@ -122,6 +127,19 @@ def make_walker(scenario: Scenario) -> Diagram:
     return diagram
 
 
+def _require_stable_support(human: HumanPlant, scenario: Scenario) -> None:
+    """Raise ParameterError if the support, an explicit force, would diverge at the plant's step."""
+    plant = human.plant
+    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    stable = largest_support_step(M, human.kp, human.kd, scenario.balance.support)
+    if plant.time_step() > stable:
+        raise ParameterError(
+            f"balance.support: unstable at time_step {plant.time_step():g} s; allowed: steps up to "
+            f"{round_down(stable):g} s with this stiffness and damping; lower rotational_damping "
+            f"({scenario.balance.support.rotational_damping:g}) or damping ({scenario.balance.support.damping:g})"
+        )
+
+
 def _add_foot_force_balance(
     builder: DiagramBuilder,
     scenario: Scenario,
@@ -129,7 +147,7 @@ def _add_foot_force_balance(
     feet: FootForceObserver,
 ) -> FootForceBalance:
     """Add balance level 1 between the gait and the inverse kinematics."""
-    level_1 = builder.AddNamedSystem(
+    level_1: FootForceBalance = builder.AddNamedSystem(
         "foot_force_balance",
         FootForceBalance(
             scenario.subject.mass * UniformGravityFieldElement.kDefaultStrength,

@@ -28,5 +28,6 @@ def draw_diagram(diagram: Diagram, path: Path, depth: int = 1) -> None:
         raise ParameterError(f"-o {path}: unknown picture format; allowed: {', '.join(FORMATS)}; name it diagram.svg")
     if shutil.which("dot") is None:
         raise ParameterError("diagram: Graphviz' dot is not found; install it: apt-get install graphviz")
-    (graph,) = pydot.graph_from_dot_data(diagram.GetGraphvizString(max_depth=depth, options={"split": "I/O"}))
-    write_whole(path, lambda beside: graph.write(str(beside), format=kind))
+    graphs = pydot.graph_from_dot_data(diagram.GetGraphvizString(max_depth=depth, options={"split": "I/O"}))
+    assert graphs, "Drake wrote a graph that pydot cannot read"
+    write_whole(path, lambda beside: graphs[0].write(str(beside), format=kind))

@@ -33,8 +33,8 @@ LOCALHOST = "127.0.0.1"
 SCENE = "/drake"
 """Meshcat's path of all that is published: it is moved backwards as the walker moves forwards."""
 
-CAMERA_POSITION = (2.6, -3.8, 1.45)
-CAMERA_TARGET = (0.0, 0.0, 0.86)
+CAMERA_POSITION = (2.6, -3.9, 1.4)
+CAMERA_TARGET = (0.0, 0.0, 0.79)
 CAMERA_FIELD_OF_VIEW_DEG = 27.0
 """The first look, from the right and ahead; the pelvis stays above the origin."""
 
@@ -62,13 +62,17 @@ def make_meshcat() -> Meshcat:
         raise ParameterError(f"replay: Meshcat does not start: {error}; run with --no-replay") from None
     for path in ("/Grid", "/Axes", "/Lights/SpotLight", "/Lights/PointLightNegativeX", "/Lights/PointLightPositiveX"):
         meshcat.SetProperty(path, "visible", False)
-    meshcat.SetProperty("/Background", "top_color", [0.62, 0.76, 0.90])
-    meshcat.SetProperty("/Background", "bottom_color", [0.95, 0.96, 0.97])
+    meshcat.SetProperty("/Background/<object>", "top_color", [0.62, 0.76, 0.90])
+    meshcat.SetProperty("/Background/<object>", "bottom_color", [0.95, 0.96, 0.97])
     meshcat.SetProperty("/Lights/AmbientLight/<object>", "intensity", 1.4)
     sun = "/Lights/FillLight/<object>"
     meshcat.SetProperty(sun, "position", [3.0, -2.5, 6.0])
     meshcat.SetProperty(sun, "intensity", 2.2)
     meshcat.SetProperty(sun, "castShadow", True)
+    for side in ("width", "height"):
+        meshcat.SetProperty(sun, f"shadow.mapSize.{side}", 2048.0)
+    # Without it the floor shades itself in rings.
+    meshcat.SetProperty(sun, "shadow.normalBias", 0.02)
     meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=CAMERA_FIELD_OF_VIEW_DEG, aspect=16 / 9, near=0.1, far=200.0))
     meshcat.SetCameraPose(np.array(CAMERA_POSITION), np.array(CAMERA_TARGET))
     return meshcat
@@ -94,6 +98,8 @@ class FollowingView(LeafSystem):
         self.DeclarePeriodicPublishEvent(1.0 / frame_rate, 0.0, self._publish)
         for side in SIDES:
             _add_arrow(meshcat, _arrow(side))
+        # Where each arrow was last: an unloaded foot has no centre of pressure to glide to.
+        self._X_WA = dict.fromkeys(SIDES, RigidTransform())
 
     def get_query_object_input_port(self) -> InputPort:
         """Input query_object."""
@@ -106,19 +112,20 @@ class FollowingView(LeafSystem):
     def _publish(self, context: Context) -> None:
         time = context.get_time()
         p_WP = _pelvis_position(self._scene.Eval(context))
-        self._meshcat.SetTransform(SCENE, RigidTransform([-p_WP[0], 0.0, 0.0]), time)
+        self._meshcat.SetTransform(SCENE, RigidTransform(np.array([-p_WP[0], 0.0, 0.0])), time)
         if not self._foot_forces.HasValue(context):
             return
         for side, foot in zip(SIDES, self._foot_forces.Eval(context).reshape(2, 8), strict=True):
             f_W, p_WCop, loaded = foot[0:3], foot[3:6], bool(foot[7])
+            if loaded:
+                self._X_WA[side] = RigidTransform(RotationMatrix.MakeFromOneVector(f_W, 2), p_WCop)
+            length = max(ARROW_LENGTH_PER_FORCE * float(np.linalg.norm(f_W)), 1e-3)
+            # All of it at every frame: a track that ends before the others would repeat out of step with them.
             arrow = _arrow(side)
             self._meshcat.SetProperty(arrow, "visible", loaded, time)
-            if loaded:
-                length = ARROW_LENGTH_PER_FORCE * float(np.linalg.norm(f_W))
-                X_WA = RigidTransform(RotationMatrix.MakeFromOneVector(f_W, 2), p_WCop)
-                self._meshcat.SetTransform(arrow, X_WA, time)
-                self._meshcat.SetTransform(f"{arrow}/head", RigidTransform([0.0, 0.0, length]), time)
-                self._meshcat.SetProperty(f"{arrow}/shaft", "scale", [1.0, 1.0, length], time)
+            self._meshcat.SetTransform(arrow, self._X_WA[side], time)
+            self._meshcat.SetTransform(f"{arrow}/head", RigidTransform(np.array([0.0, 0.0, length])), time)
+            self._meshcat.SetProperty(f"{arrow}/shaft", "scale", [1.0, 1.0, length], time)
 
 
 def add_visualizer(
@@ -242,6 +249,8 @@ def _add_arrow(meshcat: Meshcat, path: str) -> None:
     """Add an arrow along z whose shaft is scaled by its length; it is not seen before it has one."""
     meshcat.SetProperty(path, "visible", False)
     meshcat.SetObject(f"{path}/shaft/cylinder", Cylinder(0.011, 1.0), ARROW_COLOR)
-    meshcat.SetTransform(f"{path}/shaft/cylinder", RigidTransform([0.0, 0.0, 0.5]))
+    meshcat.SetTransform(f"{path}/shaft/cylinder", RigidTransform(np.array([0.0, 0.0, 0.5])))
     meshcat.SetObject(f"{path}/head/cone", MeshcatCone(0.08, 0.032, 0.032), ARROW_COLOR)
-    meshcat.SetTransform(f"{path}/head/cone", RigidTransform(RotationMatrix.MakeXRotation(np.pi), [0.0, 0.0, 0.07]))
+    meshcat.SetTransform(
+        f"{path}/head/cone", RigidTransform(RotationMatrix.MakeXRotation(np.pi), np.array([0.0, 0.0, 0.07]))
+    )

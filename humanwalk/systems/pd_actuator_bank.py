@@ -8,8 +8,9 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
 
-from humanwalk.control.joint_map import JointMap
-from humanwalk.control.pd_control import largest_stable_step, pd_torque
+from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
+from humanwalk.control.pd_control import largest_explicit_step, pd_torque
+from humanwalk.control.stability import round_down
 from humanwalk.quantity import ParameterError
 
 Array = npt.NDArray[np.float64]
@@ -185,15 +186,9 @@ class PdActuatorBank(LeafSystem):
 def require_stable(plant: MultibodyPlant, kp: Array, kd: Array) -> None:
     """Raise ParameterError if the explicit law would diverge at the plant's time step (in neutral standing)."""
     context = plant.CreateDefaultContext()
-    M = plant.CalcMassMatrix(context)
-    joints = JointMap.of(plant)
-    order = np.concatenate((np.setdiff1d(np.arange(M.shape[0]), joints.v), joints.v))
-    stable = largest_stable_step(M[np.ix_(order, order)], kp, kd)
+    stable = largest_explicit_step(base_first_mass_matrix(plant, context), kp, kd)
     if plant.time_step() > stable:
-        # Rounded down, so that the step that is named is one that is accepted.
-        digit = 10.0 ** (np.floor(np.log10(stable)) - 1)
-        named = digit * np.floor(stable / digit)
         raise ParameterError(
             f"actuators.law: explicit is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
-            f"{named:.2g} s with these gains; use law: implicit, softer gains, or that step"
+            f"{round_down(stable):g} s with these gains; use law: implicit, softer gains, or that step"
         )

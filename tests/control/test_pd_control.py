@@ -11,7 +11,7 @@ from humanwalk.control.pd_control import (
     PdGains,
     is_ankle,
     joint_gains,
-    largest_stable_step,
+    largest_explicit_step,
     pd_torque,
     preset_stiffness,
 )
@@ -96,22 +96,22 @@ def test_a_joint_without_preset_is_named():
 def test_the_stable_step_of_one_joint_is_the_textbooks(kp, kd):
     """Semi-implicit Euler of I q'' = -kp q - kd q' is stable while kp h^2 + 2 kd h < 4 I."""
     inertia = 0.01
-    h = largest_stable_step(np.array([[inertia]]), np.array([kp]), np.array([kd]))
+    h = largest_explicit_step(np.array([[inertia]]), np.array([kp]), np.array([kd]))
     exact = (-kd + np.sqrt(kd**2 + 4 * inertia * kp)) / kp
     assert exact / 1.02 < h <= exact * (1 + 1e-6)
 
 
 def test_a_lighter_body_needs_a_shorter_step():
     kp, kd = np.array([1e4]), np.array([10.0])
-    heavy, light = (largest_stable_step(np.array([[i]]), kp, kd) for i in (0.01, 0.001))
+    heavy, light = (largest_explicit_step(np.array([[i]]), kp, kd) for i in (0.01, 0.001))
     assert light < heavy / 3
 
 
 def test_gentle_gains_are_stable_at_the_longest_step_looked_at():
-    assert largest_stable_step(np.array([[1.0]]), np.array([1.0]), np.array([0.1]), upper=0.05) == 0.05
+    assert largest_explicit_step(np.array([[1.0]]), np.array([1.0]), np.array([0.1]), upper=0.05) == 0.05
 
 
 def test_a_free_base_makes_joints_lighter_and_the_step_shorter(mass_matrix, joints, inertia):
     kp, kd = joint_gains(joints.names, inertia, ActuatorParameters())
-    floating, held = (largest_stable_step(M, kp, kd) for M in (mass_matrix, mass_matrix[6:, 6:]))
+    floating, held = (largest_explicit_step(M, kp, kd) for M in (mass_matrix, mass_matrix[6:, 6:]))
     assert floating <= held * 1.01

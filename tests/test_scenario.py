@@ -1,0 +1,392 @@
+"""Scenario files: read strictly, answered in one line, written back without loss."""
+
+import dataclasses
+import math
+import typing
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import (
+    Scenario,
+    StartParameters,
+    dump_scenario,
+    load_scenario,
+    parse_scenario,
+    shipped_scenarios,
+)
+
+
+def refusal(text: str = "", overrides: dict[str, str] | None = None) -> str:
+    """The one line with which a scenario is refused."""
+    with pytest.raises(ParameterError) as raised:
+        parse_scenario(text, overrides)
+    message = str(raised.value)
+    assert len(message.splitlines()) == 1
+    return message
+
+
+# What is shipped, and what comes back.
+
+
+def test_thesis_is_shipped():
+    assert "thesis" in shipped_scenarios()
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_scenario_is_described_and_round_trips(name):
+    scenario = load_scenario(name)
+    assert scenario.description
+    assert len(scenario.description.splitlines()) == 1
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_scenario_is_the_same_by_name_and_by_path(name):
+    assert load_scenario(shipped_scenarios()[name]) == load_scenario(name)
+
+
+@pytest.mark.parametrize("text", ["", "  \n", "# only a comment\n", "---\n", "_anchors: &a {b: 1}\n"])
+def test_empty_file_is_the_defaults(text):
+    assert parse_scenario(text) == Scenario()
+
+
+def test_dump_writes_every_field():
+    def names(kind):
+        for field in dataclasses.fields(kind):
+            yield field.name
+            if dataclasses.is_dataclass(field.type):
+                yield from names(field.type)
+
+    text = dump_scenario(Scenario())
+    assert [name for name in names(Scenario) if f"{name}:" not in text] == []
+
+
+def test_anchors_of_underscored_keys_are_usable():
+    scenario = parse_scenario("_slow: &slow 0.7\ngait: {ramp: {speed: *slow}}")
+    assert scenario.gait.ramp.speed == 0.7
+
+
+# Overrides are typed as in YAML.
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "value"),
+    [
+        ("duration", "3", 3.0),
+        ("duration", "1e-1", 0.1),
+        ("seed", "7", 7),
+        ("contact", "hydroelastic", "hydroelastic"),
+        ("balance.support.enabled", "false", False),
+        ("balance.support.enabled", "no", False),
+        ("description", "a walk", "a walk"),
+        ("gait.path.step_height", "0.12", 0.12),
+        ("start.joint_angles", "{RightLegTibiaMotion: 0.3}", {"RightLegTibiaMotion": 0.3}),
+        ("start.joint_angles.RightLegTibiaMotion", "0.3", {"RightLegTibiaMotion": 0.3}),
+    ],
+)
+def test_override_is_typed_like_yaml(key, text, value):
+    found = parse_scenario("", {key: text})
+    for name in key.split(".")[:3]:
+        if not isinstance(found, dict):
+            found = getattr(found, name)
+    assert found == value
+    assert type(found) is type(value)
+
+
+def test_override_replaces_one_field_and_keeps_its_neighbours():
+    text = "gait: {path: {step_length: 0.4, step_height: 0.1}}"
+    path = parse_scenario(text, {"gait.path.step_height": "0.15"}).gait.path
+    assert (path.step_length, path.step_height) == (0.4, 0.15)
+
+
+@pytest.mark.parametrize("key", ["", ".", "gait.", "gait..path", "duration.x", "_x", "_tag", "duration\n"])
+def test_override_of_no_field_is_refused(key):
+    refusal("", {key: "1"})
+
+
+@pytest.mark.parametrize("value", ["", "[1", "}", "'", "&a [*a]", "1\n---\n2", "[" * 10_000])
+def test_override_that_is_no_number_is_refused(value):
+    assert "duration" in refusal("", {"duration": value})
+
+
+# What is refused, and how to mend it.
+
+
+@pytest.mark.parametrize("key", ["gait.path.step_hight", "gait.path.stepheight", "gait.path.step_heigth"])
+def test_misspelt_field_is_answered_with_the_right_one(key):
+    message = refusal("", {key: "0.1"})
+    assert message.startswith(f"{key}:")
+    assert "did you mean step_height?" in message
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "mend"),
+    [
+        ("gait.path.step_length", "50", ("centimetres", "0.5")),
+        ("gait.path.step_height", "200", ("millimetres", "0.2")),
+        ("gait.path.toe_drop", "25", ("degrees", "0.4363")),
+        ("gait.ramp.speed", "5", ("km/h", "1.389")),
+        ("simulation.time_step", "1", ("milliseconds", "0.001")),
+        ("start.joint_angles.RightLegTibiaMotion", "30", ("degrees", "0.5236")),
+    ],
+)
+def test_slip_of_the_unit_is_named_and_mended(key, value, mend):
+    message = refusal("", {key: value})
+    assert message.startswith(f"{key}:")
+    assert all(part in message for part in mend)
+
+
+@pytest.mark.parametrize("key", ["duration", "gait.ramp.speed", "start.joint_angles.a", "actuators.gains.a.kp"])
+@pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "1e400", "'nan'"])
+def test_number_that_is_not_finite_is_refused(key, value):
+    message = refusal("", {key: value})
+    assert message.startswith(f"{key}:")
+    assert "finite" in message
+
+
+@pytest.mark.parametrize("key", ["duration", "seed", "inverse_kinematics.max_iterations", "contact", "gait"])
+@pytest.mark.parametrize("value", ["1" + "0" * 400, "-1" + "0" * 400, "1" + "0" * 5000, "0x" + "f" * 9000])
+def test_huge_whole_number_is_refused(key, value):
+    assert key in refusal("", {key: value})
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("duration", "true", "a number"),
+        ("duration", "fast", "a number"),
+        ("duration", "15 s", "a number"),
+        ("duration", "2017-01-01", "a number"),
+        ("duration", "null", "a number"),
+        ("duration", "[1]", "a number"),
+        ("duration", "{a: 1}", "a number"),
+        ("seed", "1.5", "a whole number"),
+        ("seed", "true", "a whole number"),
+        ("seed", "-1", "allowed: 0 to"),
+        ("balance.support.enabled", "1", "true or false"),
+        ("balance.support.enabled", "'true'", "true or false"),
+        ("description", "3", "text"),
+        ("gait", "[1]", "allowed: ramp, path, first_swing, arms"),
+        ("gait.path", "0.3", "allowed: step_length"),
+        ("gait.path", "null", "allowed: step_length"),
+        ("start.joint_angles", "[1]", "name: value pairs"),
+        ("start.joint_angles", "{1: 0.2}", "name: value pairs"),
+        ("actuators.gains", "{a: 3}", "allowed: kp, kd"),
+        ("subject.mass", "-3", "allowed: 30 to 200 kg"),
+        ("contact", "pont", "did you mean point?"),
+        ("contact", "[point]", "allowed: point, hydroelastic"),
+        ("contact", "null", "allowed: point, hydroelastic"),
+        ("gait.first_swing", "right", "did you mean Right?"),
+        ("gait.path.swing", "3", "allowed: thesis, smooth"),
+    ],
+)
+def test_value_of_the_wrong_kind_is_refused(key, value, said):
+    message = refusal("", {key: value})
+    assert message.startswith(key)
+    assert said in message
+
+
+def test_discrete_plant_needs_a_time_step():
+    assert "integrator: cenic" in refusal("simulation: {time_step: 0}")
+
+
+def test_cenic_takes_no_time_step():
+    message = refusal("simulation: {integrator: cenic, time_step: 0.001}")
+    assert "simulation.time_step" in message
+    assert "set time_step: 0" in message
+
+
+def test_cenic_with_time_step_zero_is_accepted():
+    simulation = parse_scenario("simulation: {integrator: cenic, time_step: 0}").simulation
+    assert (simulation.integrator, simulation.time_step) == ("cenic", 0.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [("duration: 1\ngait: [1", 2), ("a: b: c", 1), ("gait:\n\tpath: 1", 2), ("seed: 1\nduration: *nope", 2)],
+)
+def test_syntax_error_names_its_line(text, line):
+    assert f"at line {line}," in refusal(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "- 1",
+        "3",
+        "text",
+        "&a [*a]",
+        "&a {duration: *a}",
+        "start: &a {joint_angles: *a}",
+        "x: &a 1\ny: &a 2\n",
+        "[" * 10_000,
+        "{a: " * 10_000,
+        "- " * 10_000,
+        "gait: " + "[" * 10_000,
+        "contact: " + "[" * 100 + "]" * 100,
+        "duration: !!timestamp 3",
+        "duration: !!int x",
+        "duration: !!binary aaa",
+        "duration: !unknown 3",
+        "!Scenario {duration: 1}",
+        "_tag: 3",
+        "? [a]\n: 1",
+        "null: 1",
+        "1: 2",
+        '"a\\nb": 1',
+        'contact: "a\\nb"',
+        'start: {joint_angles: {"a\\nb": 0.1}}',
+        "duration: 1\n---\nduration: 2",
+        "\x00",
+        "<<: 3",
+    ],
+)
+def test_what_is_no_scenario_is_refused_in_one_line(text):
+    refusal(text)
+
+
+@pytest.mark.parametrize("form", ["{tag} ['{command}']", "duration: {tag} ['{command}']", "_a: {tag} ['{command}']"])
+def test_a_file_runs_no_code(form, tmp_path):
+    trace = tmp_path / "trace"
+    refusal(form.format(tag="!!python/object/apply:os.system", command=f"touch {trace}"))
+    assert not trace.exists()
+
+
+def test_missing_file_is_answered_with_what_is_shipped(tmp_path):
+    with pytest.raises(ParameterError, match=r"No such file.*thesis"):
+        load_scenario(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00\x01\x80", bytes(range(256))])
+def test_binary_file_is_refused(content, tmp_path):
+    path = tmp_path / "picture.yaml"
+    path.write_bytes(content)
+    with pytest.raises(ParameterError, match="is not text"):
+        load_scenario(path)
+
+
+def test_folder_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="directory"):
+        load_scenario(tmp_path)
+
+
+# Whatever is written into a scenario: it is one, or it is refused in a line.
+
+
+def _keys(kind=Scenario, prefix=""):
+    hints = typing.get_type_hints(kind)
+    for field in dataclasses.fields(kind):
+        yield prefix + field.name
+        if dataclasses.is_dataclass(hints[field.name]):
+            yield from _keys(hints[field.name], f"{prefix}{field.name}.")
+
+
+def _numbers(kind=Scenario, prefix=""):
+    hints = typing.get_type_hints(kind)
+    for field in dataclasses.fields(kind):
+        if "low" in field.metadata:
+            low, high = field.metadata["low"], field.metadata["high"]
+            whole = hints[field.name] is int
+            yield (
+                prefix + field.name,
+                st.integers(int(low), int(high)) if whole else st.floats(low, high),
+            )
+        elif dataclasses.is_dataclass(hints[field.name]):
+            yield from _numbers(hints[field.name], f"{prefix}{field.name}.")
+
+
+KEYS = sorted(_keys())
+NUMBERS = dict(_numbers())
+
+leaves = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.integers(10**300, 10**350),
+    st.floats(),
+    st.text(max_size=8),
+    st.sampled_from(["point", "hydroelastic", "cenic", "smooth", "human", "Left", "numeric", "1e-3"]),
+)
+names = st.sampled_from(sorted({part for key in KEYS for part in key.split(".")})) | st.text(max_size=5)
+values = st.recursive(
+    leaves,
+    lambda inner: st.lists(inner, max_size=2) | st.dictionaries(names, inner, max_size=2),
+    max_leaves=4,
+)
+changes = st.dictionaries(st.sampled_from(KEYS) | names, values, min_size=1, max_size=4)
+
+
+def nested(flat):
+    """The dictionary of a scenario out of values by dotted key; a group that is a value already stays one."""
+    data = {}
+    for key in sorted(flat):
+        *parents, leaf = key.split(".")
+        group = data
+        for parent in parents:
+            group = group.setdefault(parent, {})
+            if not isinstance(group, dict):
+                break
+        else:
+            group[leaf] = flat[key]
+    return data
+
+
+@settings(max_examples=300)
+@given(changes)
+def test_any_mapping_is_a_scenario_or_refused_in_one_line(flat):
+    from pydrake.common.yaml import yaml_dump
+
+    text = yaml_dump(nested(flat))
+    try:
+        scenario = parse_scenario(text)
+    except ParameterError as error:
+        assert len(str(error).splitlines()) == 1
+    else:
+        assert parse_scenario(dump_scenario(scenario)) == scenario
+
+
+@settings(max_examples=300)
+@given(st.text(alphabet=st.sampled_from("ab:{}[]&*!-?|>'\"#%,\n\t 0.1~<"), max_size=40))
+def test_any_text_is_a_scenario_or_refused_in_one_line(text):
+    try:
+        parse_scenario(text)
+    except ParameterError as error:
+        assert len(str(error).splitlines()) == 1
+
+
+@settings(max_examples=100)
+@given(st.data())
+def test_every_valid_number_survives_dump_and_parse(data):
+    keys = data.draw(st.lists(st.sampled_from(sorted(NUMBERS)), min_size=1, max_size=8, unique=True))
+    flat = {key: data.draw(NUMBERS[key], label=key) for key in keys}
+    if flat.get("simulation.time_step") == 0:
+        flat["simulation.integrator"] = "cenic"
+    scenario = parse_scenario("", {key: repr(value) for key, value in flat.items()})
+    for key, value in flat.items():
+        found = scenario
+        for part in key.split("."):
+            found = getattr(found, part)
+        assert found == value
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+
+
+@given(st.dictionaries(st.text(st.characters(categories=["L", "N"]), min_size=1), st.floats(-math.pi, math.pi)))
+def test_start_angles_survive_dump_and_parse(angles):
+    scenario = Scenario(start=StartParameters(joint_angles=angles))
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+
+
+@pytest.mark.parametrize("key", sorted(NUMBERS))
+def test_every_number_is_refused_just_outside_its_range(key):
+    field_of, name = Scenario, key
+    *parents, name = key.split(".")
+    for parent in parents:
+        field_of = typing.get_type_hints(field_of)[parent]
+    (field,) = (field for field in dataclasses.fields(field_of) if field.name == name)
+    span = field.metadata["high"] - field.metadata["low"]
+    whole = typing.get_type_hints(field_of)[name] is int
+    for value in (field.metadata["low"] - 0.01 * span, field.metadata["high"] + 0.01 * span):
+        assert refusal("", {key: repr(math.floor(value) if whole else value)}).startswith(f"{key}:")
