@@ -22,7 +22,7 @@ from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import joint_gains
-from humanwalk.diagrams.ground import add_level_ground as add_level_ground
+from humanwalk.diagrams.ground import add_level_ground
 from humanwalk.scenario import Contact, Scenario
 from humanwalk.systems.pd_actuator_bank import install_gains
 
@@ -42,7 +42,7 @@ APPROXIMATIONS = {
 
 @dataclass(frozen=True)
 class HumanPlant:
-    """A finalised plant with its scene graph and the gains of its actuators (in actuator order)."""
+    """A finalised plant with its scene graph and its actuators' gains and limits (in actuator order)."""
 
     plant: MultibodyPlant
     instance: ModelInstanceIndex
@@ -50,6 +50,7 @@ class HumanPlant:
     joints: JointMap
     kp: Array
     kd: Array
+    effort_limits: Array
 
 
 def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
@@ -61,14 +62,16 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
     if plant.time_step() > 0:
         plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])
     kp, kd = human_gains(scenario)
-    if scenario.actuators.law == "implicit":
-        install_gains(plant, kp, kd)
     if scenario.actuators.effort_limits == "none":
         for i in range(plant.num_actuators()):
             plant.get_mutable_joint_actuator(JointActuatorIndex(i)).set_effort_limit(np.inf)
+    effort_limits = np.array(
+        [plant.get_joint_actuator(JointActuatorIndex(i)).effort_limit() for i in range(plant.num_actuators())]
+    )
+    install_gains(plant, kp, kd, scenario.actuators.law)
     plant.Finalize()
     keep_one_contact_set(plant, scene_graph, scenario.contact)
-    return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd)
+    return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd, effort_limits)
 
 
 def human_gains(scenario: Scenario) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
-from humanwalk.diagrams.human_plant import add_level_ground
+from humanwalk.diagrams.ground import add_level_ground
 from humanwalk.diagrams.reference import add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable
 from humanwalk.scenario import Scenario

@@ -31,7 +31,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         state (97): plant state [q; v].
         query_object: SceneGraph's, for a visualiser.
         contact_results: the plant's.
-        net_actuation (42): torque that every actuator delivers [N m].
+        torque (42): what every joint feels of its actuator [N m].
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
         ik_status (6): see InverseKinematicsSolver.
@@ -56,7 +56,9 @@ def make_walker(scenario: Scenario) -> Diagram:
     plant.SetDefaultPositions(start_positions(scenario))
     reference = add_walking_reference(builder, scenario)
     gait, solver = reference.gait, reference.inverse_kinematics
-    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law))
+    bank = builder.AddNamedSystem(
+        "actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law, human.effort_limits)
+    )
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
     feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
     builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
@@ -110,7 +112,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         (plant.get_state_output_port(), "state"),
         (human.scene_graph.get_query_output_port(), "query_object"),
         (plant.get_contact_results_output_port(), "contact_results"),
-        (plant.get_net_actuation_output_port(), "net_actuation"),
+        (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
         (bank.get_held_desired_state_output_port(), "desired_state"),
         (solver.get_status_output_port(), "ik_status"),

@@ -143,7 +143,7 @@ def diagram(
 def main() -> None:
     """Entry point; bad input is one line and exit code 2."""
     # Drake's notices (ports, half-spaces) are not for people who walk; its errors arrive as exceptions.
-    logging.getLogger("drake").setLevel(logging.ERROR)
+    logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
     try:
         app()
     except ParameterError as error:

@@ -95,6 +95,10 @@ def contact_with_hysteresis(time: Array, force: Array) -> npt.NDArray[np.bool_]:
     decided[0] = 0
     contact: npt.NDArray[np.bool_] = on[np.maximum.accumulate(decided)]
     edges = np.flatnonzero(np.diff(contact.astype(int))) + 1
+    # A body that starts standing feels no force yet: that is no landing.
+    if edges.size and time[edges[0]] - time[0] < SHORTEST_PHASE_S:
+        contact[: edges[0]] = contact[edges[0]]
+        edges = edges[1:]
     for begin, end in pairwise(edges):
         if time[end] - time[begin] < SHORTEST_PHASE_S:
             contact[begin:end] = contact[begin - 1]

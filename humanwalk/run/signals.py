@@ -41,7 +41,7 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
             *(f"{name}.desired_angle_rad" for name in joints.names),
             *(f"{name}.desired_velocity_rad_s" for name in joints.names),
         ],
-        "net_actuation": [f"{name}.torque_N_m" for name in joints.names],
+        "torque": [f"{name}.torque_N_m" for name in joints.names],
         "saturated": [f"{name}.saturated" for name in joints.names],
         "soles": [column for side in sides for column in _xyz(f"{side}_sole.", "m")],
         "com": [*_xyz("com.", "m"), *_xyz("com.velocity_", "m_s")],

@@ -66,7 +66,13 @@ def simulate(
     assert isinstance(plant, MultibodyPlant)
     recorder = Recorder.add_to(builder, walker, JointMap.of(plant), scenario.recording.signal_period)
     if meshcat is not None:
-        add_visualizer(builder, walker.GetOutputPort("query_object"), meshcat, scenario.recording.frame_rate)
+        add_visualizer(
+            builder,
+            walker.GetOutputPort("query_object"),
+            meshcat,
+            scenario.recording.frame_rate,
+            walker.GetOutputPort("foot_forces"),
+        )
     diagram = builder.Build()
     diagram.set_name("humanwalk")
     simulator = Simulator(diagram)
@@ -91,8 +97,8 @@ def simulate(
             simulator.Initialize()
             simulator.AdvanceTo(scenario.duration)
             end = monitor.reason or "completed"
-        except RuntimeError as error:
-            # Drake's solvers throw when the state has run away; what was recorded until then is worth keeping.
+        except (RuntimeError, SystemExit) as error:
+            # Drake's solvers throw, and its checks exit, when the state has run away; the record until then is kept.
             end = monitor.reason or f"solver failed: {str(error).splitlines()[0]}"
     wall_time = time.perf_counter() - started
     return Outcome(scenario, recorder.table(simulator.get_context()), end, wall_time)

@@ -55,7 +55,7 @@ def walk_and_write(
     run = write_run(path, outcome, name)
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
-            write_text(path / REPLAY, static_page(meshcat))
+            write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}"))
         if plots:
             write_plots(run)
     console.print(summary_table(run.summary))

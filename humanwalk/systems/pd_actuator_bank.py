@@ -1,7 +1,5 @@
 """LeafSystem: the PD controllers of all 42 joint actuators."""
 
-from typing import Literal
-
 import numpy as np
 import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
@@ -9,27 +7,35 @@ from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
 
 from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
-from humanwalk.control.pd_control import largest_explicit_step, pd_torque
+from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
 from humanwalk.control.stability import round_down
 from humanwalk.quantity import ParameterError
 
 Array = npt.NDArray[np.float64]
 
 
-def install_gains(plant: MultibodyPlant, kp: Array, kd: Array) -> None:
-    """Give every actuator of a plant its implicit PD gains, in actuator order; before Finalize."""
+def install_gains(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw = "implicit") -> None:
+    """Give a plant what a law leaves to its solver, for every actuator in order; before Finalize.
+
+    The implicit law leaves it both gains; the semi-implicit law kd, which is added to the joint's damping, and the
+    effort limits, which the bank keeps since the plant would clip the torque without its damping.
+    """
     for i, (p, d) in enumerate(zip(kp, kd, strict=True)):
-        plant.get_mutable_joint_actuator(JointActuatorIndex(i)).set_controller_gains(
-            PdControllerGains(p=float(p), d=float(d))
-        )
+        actuator = plant.get_mutable_joint_actuator(JointActuatorIndex(i))
+        if law == "implicit":
+            actuator.set_controller_gains(PdControllerGains(p=float(p), d=float(d)))
+        elif law == "semi_implicit":
+            joint = plant.get_mutable_joint(actuator.joint().index())
+            joint.set_default_damping_vector(joint.default_damping_vector() + d)
+            actuator.set_effort_limit(np.inf)
 
 
 class PdActuatorBank(LeafSystem):
     """tau = kp (q_d - q) + kd (v_d - v) + feedforward for each joint, in actuator order.
 
     Desired angles arrive at the control rate; between samples they move on with their rate (a first-order hold).
-    The `implicit` law hands them to the plant, whose solver applies the gains at the end of its step: stable at
-    any step. The `explicit` law computes the torque from the measured state.
+    `PdLaw` says how the plant is given the law. The implicit law hands over the desired state; the others compute
+    torques from the measured state, of which the semi-implicit one gives back kd v, the plant's damping taking it.
 
     A continuous plant (time_step 0, integrated by CENIC) takes the desired rates of its implicit law with the wrong
     sign, so there they go to it as torque, kd v_d, and as zero rates.
@@ -37,8 +43,8 @@ class PdActuatorBank(LeafSystem):
     Inputs:
         desired_state: (2n) desired angles [rad], then rates [rad/s].
         sample_time: (1) time of the desired state [s]. Optional: without it desired_state is taken as current.
-        state: plant state [q; v]. Only the explicit law reads it.
-        net_actuation: (n) what the plant's actuators deliver [N m], for `saturated`.
+        state: plant state [q; v].
+        net_actuation: (n) what the plant's actuators deliver [N m].
         feedforward: (n) torque added to the law [N m]. Optional: zero.
 
     Outputs:
@@ -46,8 +52,9 @@ class PdActuatorBank(LeafSystem):
         plant_desired_state: (2n) the desired state at the end of the plant's step, where its solver applies the
             gains; for the plant's desired_state port (implicit law only). Rates are 0 for a continuous plant.
         actuation: (n) torque for the plant's actuation port [N m]: the feed-forward (implicit), with kd v_d for a
-            continuous plant; the whole law clipped to the effort limits (explicit).
-        saturated: (n) 1 where an actuator delivers its effort limit, else 0.
+            continuous plant; the whole law clipped to the effort limits (explicit), plus kd v (semi-implicit).
+        torque: (n) what the joints feel of the law [N m]: net_actuation, less kd v (semi-implicit).
+        saturated: (n) 1 where a joint feels its effort limit, else 0.
     """
 
     def __init__(
@@ -55,17 +62,19 @@ class PdActuatorBank(LeafSystem):
         plant: MultibodyPlant,
         kp: Array,
         kd: Array,
-        law: Literal["implicit", "explicit"] = "implicit",
+        law: PdLaw = "implicit",
+        effort_limits: Array | None = None,
     ) -> None:
         """Make the bank.
 
         Args:
-            plant: the finalised plant that it drives; for the implicit law its gains are installed already.
+            plant: the finalised plant that it drives, on which `install_gains` was called.
             kp, kd: gains [N m/rad], [N m s/rad], shape (n,), in actuator order.
-            law: see the class.
+            law: how the plant is given the law.
+            effort_limits: [N m], shape (n,); the plant's own unless given.
 
         Raises:
-            ParameterError: the explicit law is not stable at the plant's time step.
+            ParameterError: the law is not stable at the plant's time step.
         """
         super().__init__()
         self._joints = JointMap.of(plant)
@@ -73,8 +82,9 @@ class PdActuatorBank(LeafSystem):
         self._law = law
         self._time_step = plant.time_step()
         self._rates_as_torque = law == "implicit" and plant.time_step() == 0
-        if law == "explicit" and plant.time_step() > 0:
-            require_stable(plant, kp, kd)
+        self._effort_limits = self._joints.effort_limits if effort_limits is None else effort_limits
+        if plant.time_step() > 0:
+            require_stable(plant, kp, kd, law)
         n = len(self._joints.names)
 
         self._desired = self.DeclareVectorInputPort("desired_state", 2 * n)
@@ -96,18 +106,20 @@ class PdActuatorBank(LeafSystem):
                 "plant_desired_state", 2 * n, self._calc_plant_desired, prerequisites_of_calc=hold
             )
         needs = {self.input_port_ticket(self._feedforward.get_index())}
-        if law == "explicit":
+        if law != "implicit":
             needs |= hold | {self.input_port_ticket(self._state.get_index())}
         elif self._rates_as_torque:
             needs |= hold
         self._actuation_output = self.DeclareVectorOutputPort(
             "actuation", n, self._calc_actuation, prerequisites_of_calc=needs
         )
+        felt = {
+            self.input_port_ticket(self._net_actuation.get_index()),
+            self.input_port_ticket(self._state.get_index()),
+        }
+        self._torque_output = self.DeclareVectorOutputPort("torque", n, self._calc_torque, prerequisites_of_calc=felt)
         self._saturated_output = self.DeclareVectorOutputPort(
-            "saturated",
-            n,
-            self._calc_saturated,
-            prerequisites_of_calc={self.input_port_ticket(self._net_actuation.get_index())},
+            "saturated", n, self._calc_saturated, prerequisites_of_calc=felt | needs
         )
 
     def _held(self, context: Context, lead: float = 0.0) -> Array:
@@ -128,23 +140,42 @@ class PdActuatorBank(LeafSystem):
             desired[desired.size // 2 :] = 0.0
         output.SetFromVector(desired)
 
-    def _calc_actuation(self, context: Context, output: BasicVector) -> None:
-        n = output.size()
-        tau = np.zeros(n)
+    def _law_torque(self, context: Context) -> tuple[Array, Array]:
+        """The law from the measured state, feed-forward included, not yet clipped; and the joint velocities."""
+        desired, state = self._held(context), self._state.Eval(context)
+        n = self._kp.size
+        q, v = self._joints.positions(state), self._joints.velocities(state)
+        tau = pd_torque(q, v, desired[:n], desired[n:], self._kp, self._kd)
         if self._feedforward.HasValue(context):
             tau += self._feedforward.Eval(context)
-        if self._rates_as_torque:
-            tau += self._kd * self._held(context)[n:]
-        if self._law == "explicit":
-            desired, state = self._held(context), self._state.Eval(context)
-            q, v = self._joints.positions(state), self._joints.velocities(state)
-            tau += pd_torque(q, v, desired[:n], desired[n:], self._kp, self._kd)
-            tau = np.clip(tau, -self._joints.effort_limits, self._joints.effort_limits)
+        return tau, v
+
+    def _calc_actuation(self, context: Context, output: BasicVector) -> None:
+        if self._law == "implicit":
+            n = output.size()
+            tau = self._feedforward.Eval(context) if self._feedforward.HasValue(context) else np.zeros(n)
+            if self._rates_as_torque:
+                tau += self._kd * self._held(context)[n:]
+        else:
+            tau, v = self._law_torque(context)
+            tau = np.clip(tau, -self._effort_limits, self._effort_limits)
+            if self._law == "semi_implicit":
+                tau += self._kd * v
         output.SetFromVector(tau)
 
+    def _torque(self, context: Context) -> Array:
+        tau: Array = self._net_actuation.Eval(context)
+        if self._law == "semi_implicit":
+            tau -= self._kd * self._joints.velocities(self._state.Eval(context))
+        return tau
+
+    def _calc_torque(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._torque(context))
+
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
-        tau = np.abs(self._net_actuation.Eval(context))
-        output.SetFromVector((tau >= (1 - 1e-9) * self._joints.effort_limits).astype(float))
+        # What a semi-implicit joint feels stays a little off the limit: its damping is of the end of the step.
+        tau = self._law_torque(context)[0] if self._law == "semi_implicit" else self._torque(context)
+        output.SetFromVector((np.abs(tau) >= (1 - 1e-9) * self._effort_limits).astype(float))
 
     def get_desired_state_input_port(self) -> InputPort:
         """Input desired_state."""
@@ -178,17 +209,23 @@ class PdActuatorBank(LeafSystem):
         """Output actuation."""
         return self._actuation_output
 
+    def get_torque_output_port(self) -> OutputPort:
+        """Output torque."""
+        return self._torque_output
+
     def get_saturated_output_port(self) -> OutputPort:
         """Output saturated."""
         return self._saturated_output
 
 
-def require_stable(plant: MultibodyPlant, kp: Array, kd: Array) -> None:
-    """Raise ParameterError if the explicit law would diverge at the plant's time step (in neutral standing)."""
-    context = plant.CreateDefaultContext()
-    stable = largest_explicit_step(base_first_mass_matrix(plant, context), kp, kd)
+def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> None:
+    """Raise ParameterError if a law would diverge at the plant's time step (in neutral standing)."""
+    if law == "implicit":
+        return
+    largest_step = largest_explicit_step if law == "explicit" else largest_semi_implicit_step
+    stable = largest_step(base_first_mass_matrix(plant, plant.CreateDefaultContext()), kp, kd)
     if plant.time_step() > stable:
         raise ParameterError(
-            f"actuators.law: explicit is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
+            f"actuators.law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
             f"{round_down(stable):g} s with these gains; use law: implicit, softer gains, or that step"
         )

@@ -12,6 +12,7 @@ from humanwalk.control.pd_control import (
     is_ankle,
     joint_gains,
     largest_explicit_step,
+    largest_semi_implicit_step,
     pd_torque,
     preset_stiffness,
 )
@@ -115,3 +116,12 @@ def test_a_free_base_makes_joints_lighter_and_the_step_shorter(mass_matrix, join
     kp, kd = joint_gains(joints.names, inertia, ActuatorParameters())
     floating, held = (largest_explicit_step(M, kp, kd) for M in (mass_matrix, mass_matrix[6:, 6:]))
     assert floating <= held * 1.01
+
+
+@given(kp=st.floats(1.0, 1e5), kd=st.floats(0.0, 100.0))
+def test_the_stable_semi_implicit_step_of_one_joint_is_the_textbooks(kp, kd):
+    """(I + h kd) q'' = -kp q is stable while kp h^2 < 4 I + 2 kd h."""
+    inertia = 0.1
+    h = largest_semi_implicit_step(np.array([[inertia]]), np.array([kp]), np.array([kd]))
+    limit = (kd + np.sqrt(kd**2 + 4 * kp * inertia)) / kp
+    assert h == pytest.approx(min(0.1, limit), rel=0.011)

@@ -28,9 +28,7 @@ def test_a_rounded_step_is_no_longer_and_keeps_two_digits(step):
 @given(mass=st.floats(1.0, 100.0), damping=st.floats(1e3, 1e5))
 def test_a_damped_block_is_stable_as_euler_says(mass, damping):
     """Without joints or stiffness each direction is v' = (1 - h d / m) v."""
-    support = BalanceSupportParameters(
-        stiffness=0.0, damping=damping, rotational_stiffness=0.0, rotational_damping=0.0
-    )
+    support = BalanceSupportParameters(stiffness=0.0, damping=damping, rotational_stiffness=0.0, rotational_damping=0.0)
     step = largest_support_step(mass * np.eye(6), np.array([]), np.array([]), support, upper=1.0)
     assert step == pytest.approx(min(1.0, 2.0 * mass / damping), rel=0.011)
 

@@ -25,9 +25,7 @@ def arc(spline, start, stop):
     """Independent arc length: adaptive integration, a segment at a time."""
     joints = [start, *np.arange(np.floor(start) + 1, np.ceil(stop)), stop]
     return sum(
-        quad(
-            lambda u: float(np.linalg.norm(spline.derivative(u))), a, b, epsabs=1e-12, epsrel=1e-12
-        )[0]
+        quad(lambda u: float(np.linalg.norm(spline.derivative(u))), a, b, epsabs=1e-12, epsrel=1e-12)[0]
         for a, b in pairwise(joints)
     )
 

@@ -8,9 +8,7 @@ from hypothesis import strategies as st
 from humanwalk.gait.arm_swing import ArmSwingParameters, arm_targets
 
 P = ArmSwingParameters()
-JOINTS = {
-    f"{side}Arm{joint}Motion" for side in ("Right", "Left") for joint in ("Shoulder", "Elbow")
-}
+JOINTS = {f"{side}Arm{joint}Motion" for side in ("Right", "Left") for joint in ("Shoulder", "Elbow")}
 
 
 def test_names_are_the_thesis_own():
@@ -44,9 +42,7 @@ def test_the_left_arm_is_the_right_arm_half_a_cycle_later(phase):
 )
 def test_rates_are_the_limits_of_differences(phase, rate, fraction, growth):
     h = 1e-5
-    ahead, behind = (
-        arm_targets(P, phase + s * rate, rate, fraction + s * growth, growth) for s in (h, -h)
-    )
+    ahead, behind = (arm_targets(P, phase + s * rate, rate, fraction + s * growth, growth) for s in (h, -h))
     for name, target in arm_targets(P, phase, rate, fraction, growth).items():
         difference = (ahead[name].angle - behind[name].angle) / (2 * h)
         assert target.rate == pytest.approx(difference, abs=1e-6)

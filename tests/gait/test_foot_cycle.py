@@ -232,9 +232,7 @@ def test_timing_at_the_thesis_speed():
 def test_minimum_offset_is_that_of_the_errata(length_cm, offset_cm):
     """E32, hip to ankle 86.4 cm."""
     digits = 5e-3 if length_cm == 50 else 5e-2
-    assert minimum_offset(length_cm / 100, LEG_LENGTH) * 100 == pytest.approx(
-        offset_cm, abs=1.01 * digits
-    )
+    assert minimum_offset(length_cm / 100, LEG_LENGTH) * 100 == pytest.approx(offset_cm, abs=1.01 * digits)
 
 
 @given(length=st.floats(0.0, 1.6))

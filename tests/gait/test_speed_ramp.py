@@ -34,9 +34,7 @@ def test_speed_is_the_rate_of_distance_and_acceleration_of_speed(ramp, t):
 
 @given(ramp=ramps, t=times)
 def test_time_at_inverts_distance(ramp, t):
-    assert ramp.distance(ramp.time_at(ramp.distance(t))) == pytest.approx(
-        ramp.distance(t), abs=1e-12
-    )
+    assert ramp.distance(ramp.time_at(ramp.distance(t))) == pytest.approx(ramp.distance(t), abs=1e-12)
 
 
 def test_the_backward_start_of_the_thesis_takes_0_365_s():

@@ -16,9 +16,7 @@ from humanwalk.gait.splines import (
 KINDS = (CubicHermite, UniformQuadraticBSpline, UniformCubicBSpline)
 U = np.linspace(0.0, 1.0, 21)
 
-points_2d = st.integers(4, 9).flatmap(
-    lambda n: arrays(np.float64, (n, 2), elements=st.floats(-50.0, 50.0))
-)
+points_2d = st.integers(4, 9).flatmap(lambda n: arrays(np.float64, (n, 2), elements=st.floats(-50.0, 50.0)))
 
 # Second cycle of appendix B at L 50, H 20 [cm].
 BACKWARD_LOOP = np.array(
@@ -69,9 +67,7 @@ def test_quadratic_matrix_of_eq_4_13_has_the_same_weights():
 
 def test_hermite_weights_are_those_of_the_appendices():
     points, tangents = np.array([[2.0, -1.0], [5.0, 3.0]]), np.array([[1.0, 4.0], [-2.0, 0.5]])
-    basis = np.column_stack(
-        [1 - 3 * U**2 + 2 * U**3, U - 2 * U**2 + U**3, 3 * U**2 - 2 * U**3, U**3 - U**2]
-    )
+    basis = np.column_stack([1 - 3 * U**2 + 2 * U**3, U - 2 * U**2 + U**3, 3 * U**2 - 2 * U**3, U**3 - U**2])
     expected = basis @ np.array([points[0], tangents[0], points[1], tangents[1]])
     np.testing.assert_allclose(CubicHermite(points, tangents).position(U), expected, atol=1e-14)
 
@@ -92,9 +88,7 @@ def test_weights_sum_to_one(kind, closed, points):
     shift = np.array([3.0, -7.0])
     u = np.linspace(0, kind(points, closed=closed).segments, 50)
     moved = kind(points + shift, closed=closed).position(u)
-    np.testing.assert_allclose(
-        moved, kind(points, closed=closed).position(u) + shift, rtol=0, atol=1e-11
-    )
+    np.testing.assert_allclose(moved, kind(points, closed=closed).position(u) + shift, rtol=0, atol=1e-11)
 
 
 @given(points=points_2d)
@@ -151,9 +145,7 @@ def test_derivative_is_the_limit_of_differences(kind, order, points, share):
     spline = kind(points)
     u, h = np.arange(spline.segments) + share, 1e-4
     ahead, behind = (spline.derivative(u + s, order - 1) for s in (h, -h))
-    np.testing.assert_allclose(
-        spline.derivative(u, order), (ahead - behind) / (2 * h), rtol=0, atol=2e-5
-    )
+    np.testing.assert_allclose(spline.derivative(u, order), (ahead - behind) / (2 * h), rtol=0, atol=2e-5)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -170,9 +162,7 @@ def test_a_parameter_off_the_curve_is_refused(u):
         CubicHermite(BACKWARD_LOOP).position(u)
 
 
-@pytest.mark.parametrize(
-    "points", [[[0.0, 1.0]], [0.0, 1.0, 2.0], [[0.0, np.nan], [1.0, 1.0], [1.0, 2.0], [0.0, 0.0]]]
-)
+@pytest.mark.parametrize("points", [[[0.0, 1.0]], [0.0, 1.0, 2.0], [[0.0, np.nan], [1.0, 1.0], [1.0, 2.0], [0.0, 0.0]]])
 @pytest.mark.parametrize("kind", KINDS)
 def test_unusable_control_points_are_refused(kind, points):
     with pytest.raises(ValueError, match="control_points has shape"):

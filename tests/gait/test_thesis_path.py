@@ -41,9 +41,7 @@ def greedy_resampling(distance, ds=1.4, tolerance=0.2):
 
 @PATHS
 def test_control_points(path):
-    np.testing.assert_allclose(
-        POINTS[path](*SIZES_CM), xy(oracle(f"{path}_control_points.csv")), rtol=0, atol=1e-9
-    )
+    np.testing.assert_allclose(POINTS[path](*SIZES_CM), xy(oracle(f"{path}_control_points.csv")), rtol=0, atol=1e-9)
 
 
 @PATHS

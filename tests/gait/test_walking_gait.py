@@ -42,9 +42,7 @@ def swing_foot(gait, target):
 def over_ground(gait, target, foot):
     """Sole in the world: pelvis moved forward and dropped from its standing height."""
     standing_sole = -gait.parameters.offset
-    return foot.position + np.array(
-        [target.pelvis.distance, 0.0, -target.pelvis.drop - standing_sole]
-    )
+    return foot.position + np.array([target.pelvis.distance, 0.0, -target.pelvis.drop - standing_sole])
 
 
 @few
@@ -92,9 +90,7 @@ def test_a_foot_in_stance_is_still_in_the_world(gait):
         target = gait.target(t)
         for foot in feet(target):
             if foot.in_stance:
-                velocity = foot.velocity + np.array(
-                    [target.pelvis.speed, 0.0, -target.pelvis.drop_rate]
-                )
+                velocity = foot.velocity + np.array([target.pelvis.speed, 0.0, -target.pelvis.drop_rate])
                 np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
                 assert foot.height == foot.height_rate == 0.0
 
@@ -109,9 +105,7 @@ def test_footsteps_are_where_the_feet_stand(gait):
             target = target_at(0.5 * (step.touchdown + min(step.lift_off, 10.0)))
             foot = target.right if step.side == "Right" else target.left
             assert foot.in_stance
-            np.testing.assert_allclose(
-                over_ground(gait, target, foot), step.position, rtol=0, atol=1e-9
-            )
+            np.testing.assert_allclose(over_ground(gait, target, foot), step.position, rtol=0, atol=1e-9)
 
 
 @few
@@ -181,9 +175,7 @@ def test_velocities_have_no_jump(gait):
 
 
 def test_the_speed_does_not_change_where_the_feet_go():
-    slow, fast = (
-        WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(v, 0.8)) for v in (0.5, 1.5)
-    )
+    slow, fast = (WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(v, 0.8)) for v in (0.5, 1.5))
     for d in np.linspace(0.0, 1.5, 40):
         a, b = (gait.target(gait.ramp.time_at(d)) for gait in (slow, fast))
         np.testing.assert_allclose(a.left.position, b.left.position, atol=1e-9)
@@ -191,10 +183,7 @@ def test_the_speed_does_not_change_where_the_feet_go():
 
 
 def test_the_other_leg_first_is_the_mirror_image():
-    right, left = (
-        WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(), side)
-        for side in ("Right", "Left")
-    )
+    right, left = (WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(), side) for side in ("Right", "Left"))
     for t in TIMES:
         a, b = right.target(t), left.target(t)
         np.testing.assert_array_equal(a.right.position * [1, -1, 1], b.left.position)

@@ -26,14 +26,14 @@ def gains(plant, joints):
     return joint_gains(joints.names, inertia, ActuatorParameters())
 
 
-def floating_human(time_step, gains, limited=True):
+def floating_human(time_step, gains, limited=True, law="implicit"):
     """The human in a diagram, in zero gravity and without ground; gains installed where given."""
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, time_step)
     add_human(plant, Subject())
     plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
     if gains is not None:
-        install_gains(plant, *gains)
+        install_gains(plant, *gains, law)
     if not limited:
         remove_limits(plant)
     plant.Finalize()
@@ -95,6 +95,7 @@ def test_ports(implicit, explicit, discrete_plant):
         for port, name, size in (
             (bank.get_held_desired_state_output_port(), "held_desired_state", 2 * N),
             (bank.get_actuation_output_port(), "actuation", N),
+            (bank.get_torque_output_port(), "torque", N),
             (bank.get_saturated_output_port(), "saturated", N),
         ):
             assert (port.get_name(), port.size()) == (name, size)
@@ -159,6 +160,55 @@ def test_the_implicit_law_passes_the_feedforward(implicit):
     np.testing.assert_array_equal(implicit.get_actuation_output_port().Eval(context), 0.0)
 
 
+@settings(max_examples=20)
+@given(rng=seeds)
+def test_the_semi_implicit_law_leaves_the_damping_to_the_plant(rng):
+    """Torque and the plant's damping together are the law, also where a joint is at its limit."""
+    kp, kd = np.full(N, 100.0), np.linspace(1.0, 20.0, N)
+    limits = np.full(N, 50.0)
+    _, plant = floating_human(0.001, (kp, kd), law="semi_implicit")
+    bank, joints = PdActuatorBank(plant, kp, kd, "semi_implicit", limits), JointMap.of(plant)
+    state = np.zeros(plant.num_multibody_states())
+    q, v, q_d, v_d = rng.normal(size=(4, N))
+    state[joints.q] = q
+    state[plant.num_positions() + joints.v] = v
+    context = context_with(bank, desired_state=np.concatenate((q_d, v_d)), state=state)
+    actuation = bank.get_actuation_output_port().Eval(context)
+    law = pd_torque(q, v, q_d, v_d, kp, kd)
+    np.testing.assert_allclose(actuation - kd * v, np.clip(law, -limits, limits), atol=1e-9)
+
+    context = context_with(bank, desired_state=np.concatenate((q_d, v_d)), state=state, net_actuation=actuation)
+    np.testing.assert_allclose(bank.get_torque_output_port().Eval(context), actuation - kd * v, atol=1e-9)
+    saturated = bank.get_saturated_output_port().Eval(context)
+    np.testing.assert_array_equal(saturated, (np.abs(law) >= limits).astype(float))
+
+
+def test_the_semi_implicit_law_adds_its_damping_to_the_joints_own(gains):
+    _, bare = floating_human(0.001, None)
+    _, plant = floating_human(0.001, gains, law="semi_implicit")
+    for i in range(N):
+        joint = plant.get_joint_actuator(JointActuatorIndex(i)).joint()
+        own = bare.get_joint(joint.index()).default_damping_vector()
+        np.testing.assert_allclose(joint.default_damping_vector(), own + gains[1][i])
+
+
+def test_semi_implicit_and_implicit_law_move_the_body_alike(gains):
+    """Both are of first order in the step, so a tenth of the step leaves a tenth of the difference."""
+
+    def difference(time_step):
+        ends = [
+            perturbed_run(time_step, gains, law, steps=round(0.01 / time_step)) for law in ("implicit", "semi_implicit")
+        ]
+        return abs(ends[0] - ends[1])
+
+    assert difference(0.0001) < 0.3 * difference(0.001) < 1e-3
+
+
+@pytest.mark.parametrize("time_step", [0.0005, 0.001, 0.002])
+def test_the_semi_implicit_law_is_stable_with_the_thesis_gains(gains, time_step):
+    assert perturbed_run(time_step, gains, "semi_implicit", steps=300) < 0.01
+
+
 # ---- between samples
 
 
@@ -195,7 +245,7 @@ def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
 
 def perturbed_run(time_step, gains, law, steps, unchecked=False):
     """Largest joint angle at the end of a run that begins 0.01 rad off, without limits."""
-    builder, plant = floating_human(time_step, gains if law == "implicit" else None, limited=False)
+    builder, plant = floating_human(time_step, gains, limited=False, law=law)
     joints = JointMap.of(plant)
     if unchecked:
         # The bank refuses this step; made for a plant that has none, the law is the same.
