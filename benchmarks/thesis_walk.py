@@ -82,7 +82,7 @@ def main() -> int:
         "realtime_factors": [run["realtime_factor"] for run in runs],
         "peak_memory_MB": statistics.median(run["peak_memory_MB"] for run in runs),
         "bit_identical": len({run["signals_sha256"] for run in runs}) == 1,
-        "machine": f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}",
+        "machine": f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}",
         "overrides": arguments.set,
     }
     missed = 0

@@ -97,8 +97,8 @@ class SimulationParameters:
     accuracy: float = quantity(1e-3, "", 1e-8, 0.1)
     """Accuracy asked of cenic."""
 
-    control_period: float = quantity(0.005, "s", 0.0005, 0.05)
-    """Time between two solutions of the inverse kinematics."""
+    control_period: float = quantity(0.01, "s", 0.0005, 0.05)
+    """Time between two solutions of the inverse kinematics; 0.01 s is the thesis' time between two foot points."""
 
 
 @dataclass(frozen=True)

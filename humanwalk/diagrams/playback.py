@@ -16,7 +16,7 @@ from humanwalk.systems.playback_positions import PlaybackPositions
 def make_playback(scenario: Scenario) -> Diagram:
     """Wire the walking reference of a scenario straight to the picture: what the walker would do if it could.
 
-    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, playback_positions.
+    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_positions.
 
     Exported outputs:
         positions (49): plant positions q.
@@ -44,11 +44,11 @@ def make_playback(scenario: Scenario) -> Diagram:
     connect_soles(builder, reference.gait, solver)
     builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
     builder.Connect(reference.gait.get_pelvis_pose_output_port(), positions.get_pelvis_pose_input_port())
-    builder.Connect(solver.get_desired_state_output_port(), positions.get_desired_state_input_port())
+    builder.Connect(reference.interpolator.get_desired_state_output_port(), positions.get_desired_state_input_port())
     builder.Connect(positions.get_positions_output_port(), to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))
     builder.ExportOutput(positions.get_positions_output_port(), "positions")
-    builder.ExportOutput(solver.get_desired_state_output_port(), "desired_state")
+    builder.ExportOutput(reference.interpolator.get_desired_state_output_port(), "desired_state")
     builder.ExportOutput(solver.get_status_output_port(), "ik_status")
     builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
     diagram = builder.Build()

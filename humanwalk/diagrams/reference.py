@@ -1,4 +1,4 @@
-"""The walking reference: gait spline source, arm swing and inverse kinematics, shared by walker and playback."""
+"""The walking reference: gait, arm swing, inverse kinematics, interpolation; shared by walker and playback."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,11 +8,13 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort
 from humanwalk.body import SIDES, Side
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.joint_map import JointMap
+from humanwalk.gait.arm_swing import arm_targets
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.scenario import Scenario
 from humanwalk.systems.arm_swing_source import ArmSwingSource
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
+from humanwalk.systems.posture_interpolator import PostureInterpolator
 
 
 class SoleTargets(Protocol):
@@ -27,11 +29,16 @@ class SoleTargets(Protocol):
 
 @dataclass(frozen=True)
 class WalkingReference:
-    """The three systems of a walking reference, added to a diagram and not yet connected."""
+    """The systems of a walking reference, added to a diagram.
+
+    The inverse kinematics run one control period ahead and feed the interpolator; what they are fed with is still to
+    be connected.
+    """
 
     gait: GaitSplineSource
     arms: ArmSwingSource
     inverse_kinematics: InverseKinematicsSolver
+    interpolator: PostureInterpolator
 
 
 def make_gait(scenario: Scenario) -> WalkingGait:
@@ -42,17 +49,37 @@ def make_gait(scenario: Scenario) -> WalkingGait:
 
 
 def add_walking_reference(builder: DiagramBuilder, scenario: Scenario) -> WalkingReference:
-    """Add the three systems, named gait, arms and inverse_kinematics."""
+    """Add the systems, named gait, arms, inverse_kinematics and interpolator."""
     plant = kinematics_plant(scenario.subject)
-    gait = make_gait(scenario)
-    return WalkingReference(
-        gait=builder.AddNamedSystem("gait", GaitSplineSource(gait, scenario.subject.skeleton)),
-        arms=builder.AddNamedSystem("arms", ArmSwingSource(JointMap.of(plant).names, gait, scenario.gait.arms)),
-        inverse_kinematics=builder.AddNamedSystem(
-            "inverse_kinematics",
-            InverseKinematicsSolver(plant, scenario.inverse_kinematics, scenario.simulation.control_period),
-        ),
+    names = JointMap.of(plant).names
+    gait, arms = make_gait(scenario), scenario.gait.arms
+    period = scenario.simulation.control_period
+    solver = InverseKinematicsSolver(
+        plant, scenario.inverse_kinematics, period, period, start_posture=standing_posture(scenario)
     )
+    reference = WalkingReference(
+        gait=builder.AddNamedSystem("gait", GaitSplineSource(gait, scenario.subject.skeleton, period)),
+        arms=builder.AddNamedSystem("arms", ArmSwingSource(names, gait, arms, preview=period)),
+        inverse_kinematics=builder.AddNamedSystem("inverse_kinematics", solver),
+        interpolator=builder.AddNamedSystem("interpolator", PostureInterpolator(len(names))),
+    )
+    connect_samples(builder, solver, reference.interpolator)
+    return reference
+
+
+def standing_posture(scenario: Scenario) -> dict[str, float]:
+    """Joint angles [rad] by name of the gait at time zero, where they are not zero: legs straight, arms hanging."""
+    return {name: target.angle for name, target in arm_targets(scenario.gait.arms, 0.0, 0.0, 0.0).items()}
+
+
+def connect_samples(
+    builder: DiagramBuilder, solver: InverseKinematicsSolver, interpolator: PostureInterpolator
+) -> None:
+    """Connect the solver's last two samples to the interpolator."""
+    builder.Connect(solver.get_previous_state_output_port(), interpolator.get_previous_state_input_port())
+    builder.Connect(solver.get_previous_time_output_port(), interpolator.get_previous_time_input_port())
+    builder.Connect(solver.get_desired_state_output_port(), interpolator.get_next_state_input_port())
+    builder.Connect(solver.get_sample_time_output_port(), interpolator.get_next_time_input_port())
 
 
 def connect_soles(builder: DiagramBuilder, targets: SoleTargets, solver: InverseKinematicsSolver) -> None:

@@ -10,7 +10,7 @@ from humanwalk.body import LEG_JOINTS, SIDES, contact_spheres
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.inverse_kinematics import LegKinematics, pose_error, solve_inverse_kinematics
 from humanwalk.control.joint_map import JointMap
-from humanwalk.gait.arm_swing import arm_targets
+from humanwalk.diagrams.reference import standing_posture
 from humanwalk.gait.foot_cycle import FootCycle, minimum_offset
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -40,8 +40,7 @@ def start_positions(scenario: Scenario) -> Array:
     context = plant.CreateDefaultContext()
     joints = JointMap.of(plant)
     angles = dict.fromkeys(joints.names, 0.0)
-    for name, target in arm_targets(scenario.gait.arms, 0.0, 0.0, 0.0).items():
-        angles[name] = target.angle
+    angles |= standing_posture(scenario)
     for name, angle in scenario.start.joint_angles.items():
         if name not in angles:
             near = difflib.get_close_matches(name, joints.names, n=1, cutoff=0.0)[0]

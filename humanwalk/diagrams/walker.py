@@ -25,7 +25,7 @@ from humanwalk.systems.upper_body_balance import UpperBodyBalance
 def make_walker(scenario: Scenario) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
+    Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, interpolator, actuators, body_observer,
     foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance.
 
     Exported outputs, joints in actuator order:
@@ -88,8 +88,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         posture = level_2.get_balanced_posture_output_port()
     builder.Connect(posture, solver.get_posture_input_port())
 
-    builder.Connect(solver.get_desired_state_output_port(), bank.get_desired_state_input_port())
-    builder.Connect(solver.get_sample_time_output_port(), bank.get_sample_time_input_port())
+    builder.Connect(reference.interpolator.get_desired_state_output_port(), bank.get_desired_state_input_port())
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
@@ -119,7 +118,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
-        (bank.get_held_desired_state_output_port(), "desired_state"),
+        (reference.interpolator.get_desired_state_output_port(), "desired_state"),
         (solver.get_status_output_port(), "ik_status"),
         (gait.get_pelvis_position_output_port(), "pelvis_reference"),
         (gait.get_phase_output_port(), "phase"),

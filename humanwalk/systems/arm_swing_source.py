@@ -23,6 +23,7 @@ class ArmSwingSource(LeafSystem):
         gait: WalkingGait,
         parameters: ArmSwingParameters,
         start_posture: Mapping[str, float] | None = None,
+        preview: float = 0.0,
     ) -> None:
         """Make the source for n joints in actuator order, in step with a gait.
 
@@ -31,10 +32,12 @@ class ArmSwingSource(LeafSystem):
             gait: whose phases the arms follow.
             parameters: size of the swing.
             start_posture: angles [rad] by joint name that are held throughout (arms: the middle of their swing).
+            preview: how far ahead of the present the posture is [s].
         """
         super().__init__()
         self._gait = gait
         self._parameters = parameters
+        self._preview = preview
         self._place = {name: i for i, name in enumerate(joint_names)}
         self._n = len(joint_names)
         self._start = np.zeros(2 * self._n)
@@ -45,7 +48,7 @@ class ArmSwingSource(LeafSystem):
         )
 
     def _calc_posture(self, context: Context, output: BasicVector) -> None:
-        t = context.get_time()
+        t = context.get_time() + self._preview
         ramp, parameters = self._gait.ramp, self._gait.parameters
         full = ramp.speed if ramp.speed > 0 else 1.0
         targets = arm_targets(

@@ -1,5 +1,7 @@
 """LeafSystem: where both soles and the pelvis should be, from the gait's splines."""
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 from pydrake.common.value import Value
@@ -20,6 +22,8 @@ def _sole_velocity(foot: FootTarget) -> SpatialVelocity:
 class GaitSplineSource(LeafSystem):
     """The walking reference as a function of time; it has no input.
 
+    The soles' targets are those of the time `preview` from now, everything else is of now.
+
     Outputs:
         X_PRs, X_PLs: RigidTransform, desired pose of the right and left sole frame in the pelvis P. Soles are level
             in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by the path's toe_drop.
@@ -31,10 +35,14 @@ class GaitSplineSource(LeafSystem):
         contact_schedule: (2) right, left: 1 in stance, 0 in swing.
     """
 
-    def __init__(self, gait: WalkingGait, skeleton: Skeleton) -> None:
-        """Make the source of a gait for a body whose pelvis frame is at hip height."""
+    def __init__(self, gait: WalkingGait, skeleton: Skeleton, preview: float = 0.0) -> None:
+        """Make the source of a gait for a body whose pelvis frame is at hip height, `preview` [s] ahead."""
         super().__init__()
         self._gait = gait
+        self._preview = preview
+        # Pose and velocity of a foot are asked for one after the other.
+        self._foot_at = lru_cache(maxsize=4)(gait.foot)
+        self._pelvis_at = lru_cache(maxsize=2)(gait.pelvis)
         self._hip_height = skeleton.hip_height
         self._X, self._V = {}, {}
         for side in SIDES:
@@ -79,7 +87,7 @@ class GaitSplineSource(LeafSystem):
         )
 
     def _foot(self, context: Context, side: Side) -> FootTarget:
-        return self._gait.foot(side, context.get_time())
+        return self._foot_at(side, context.get_time() + self._preview)
 
     def _sole_pose(self, foot: FootTarget) -> RigidTransform:
         below_hips = self._hip_height - self._gait.parameters.offset
@@ -89,14 +97,14 @@ class GaitSplineSource(LeafSystem):
         )
 
     def _pelvis_position(self, context: Context) -> Array:
-        pelvis = self._gait.pelvis(context.get_time())
+        pelvis = self._pelvis_at(context.get_time())
         return np.array([pelvis.distance, 0.0, self._hip_height - pelvis.drop])
 
     def _calc_pelvis_pose(self, context: Context, output: Value) -> None:
         output.set_value(RigidTransform(self._pelvis_position(context)))
 
     def _calc_pelvis_velocity(self, context: Context, output: Value) -> None:
-        pelvis = self._gait.pelvis(context.get_time())
+        pelvis = self._pelvis_at(context.get_time())
         output.set_value(SpatialVelocity(np.zeros(3), np.array([pelvis.speed, 0.0, -pelvis.drop_rate])))
 
     def _calc_phase(self, context: Context, output: BasicVector) -> None:

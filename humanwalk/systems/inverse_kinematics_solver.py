@@ -21,9 +21,15 @@ from humanwalk.control.joint_map import JointMap
 
 Array = npt.NDArray[np.float64]
 
+FIRST_KNEE_BEND = 0.3
+"""Bend of the knees from which the first solution starts [rad]."""
+
 
 class InverseKinematicsSolver(LeafSystem):
     """Newton inverse kinematics of both legs, warm-started, in a periodic discrete update.
+
+    With a preview its inputs are targets for the time `preview` from now. Made with a preview of one period, it keeps
+    the sample before and the sample after the present, for a PostureInterpolator.
 
     Inputs:
         X_PRs, X_PLs: RigidTransform, desired poses of the right and left sole in the pelvis P.
@@ -33,7 +39,8 @@ class InverseKinematicsSolver(LeafSystem):
 
     Outputs (all show state, so reading them solves nothing):
         desired_state: (84) desired joint angles [rad], then rates [rad/s], in actuator order.
-        sample_time: (1) the time at which they were solved [s].
+        sample_time: (1) the time for which they were solved [s].
+        previous_state, previous_time: the same of the solution before; at first the start posture at rest.
         status: (6) residual right, left; Newton steps right, left; converged right, left (1 or 0).
     """
 
@@ -42,7 +49,8 @@ class InverseKinematicsSolver(LeafSystem):
         plant: MultibodyPlant,
         parameters: InverseKinematicsParameters,
         period: float,
-        seed_posture: Mapping[str, float] | None = None,
+        preview: float = 0.0,
+        start_posture: Mapping[str, float] | None = None,
     ) -> None:
         """Make the solver.
 
@@ -50,8 +58,9 @@ class InverseKinematicsSolver(LeafSystem):
             plant: finalised model of the body, for kinematics only.
             parameters: settings of the Newton iteration.
             period: time between solutions [s].
-            seed_posture: joint angles [rad] by name from which the first solution starts; knees that are not
-                named start at 0.3 rad, since a straight knee is singular.
+            preview: how far ahead of the present the inputs are [s].
+            start_posture: joint angles [rad] by name of the posture before the first solution, zero unless named. It
+                is solved from there, but with knees bent by 0.3 rad: a straight knee is singular.
         """
         super().__init__()
         self._parameters = parameters
@@ -59,8 +68,12 @@ class InverseKinematicsSolver(LeafSystem):
         names = JointMap.of(plant).names
         self._n = len(names)
         self._places = {side: np.array([names.index(name) for name in LEG_JOINTS[side]]) for side in SIDES}
-        seed = {f"{side}LegTibiaMotion": 0.3 for side in SIDES} | dict(seed_posture or {})
-        seed_q = np.array([seed.get(name, 0.0) for name in names])
+        start = np.zeros(2 * self._n)
+        for name, angle in (start_posture or {}).items():
+            start[names.index(name)] = angle
+        self._bent_knees = np.zeros(self._n)
+        self._bent_knees[[names.index(f"{side}LegTibiaMotion") for side in SIDES]] = FIRST_KNEE_BEND
+        self._preview = preview
 
         self._X, self._V = {}, {}
         for side in SIDES:
@@ -69,22 +82,38 @@ class InverseKinematicsSolver(LeafSystem):
             self._V[side] = self.DeclareAbstractInputPort(f"V_P{letter}s", Value(SpatialVelocity()))
         self._posture = self.DeclareVectorInputPort("posture", 2 * self._n)
 
-        desired = self.DeclareDiscreteState(np.concatenate((seed_q, np.zeros(self._n))))
+        desired = self.DeclareDiscreteState(start)
         sample_time = self.DeclareDiscreteState(1)
         status = self.DeclareDiscreteState(6)
+        previous = self.DeclareDiscreteState(start)
+        previous_time = self.DeclareDiscreteState(1)
         self._desired_state_output = self.DeclareStateOutputPort("desired_state", desired)
         self._sample_time_output = self.DeclareStateOutputPort("sample_time", sample_time)
         self._status_output = self.DeclareStateOutputPort("status", status)
-        self._groups = (desired, sample_time, status)
-        self.DeclareInitializationDiscreteUpdateEvent(self._solve)
-        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
+        self._previous_state_output = self.DeclareStateOutputPort("previous_state", previous)
+        self._previous_time_output = self.DeclareStateOutputPort("previous_time", previous_time)
+        self._groups = (desired, sample_time, status, previous, previous_time)
+        self.DeclareInitializationDiscreteUpdateEvent(self._initialize)
+        # The first solution is the initialisation's.
+        self.DeclarePeriodicDiscreteUpdateEvent(period, period, self._solve)
+
+    def _initialize(self, context: Context, discrete: DiscreteValues) -> EventStatus:
+        desired, *_, previous_time = self._groups
+        start = context.get_discrete_state(desired).value()
+        discrete.set_value(previous_time, [context.get_time()])
+        return self._solve_from(start[: self._n] + self._bent_knees, context, discrete)
 
     def _solve(self, context: Context, discrete: DiscreteValues) -> EventStatus:
-        desired, sample_time, status = self._groups
-        # Start from where the last solution would be now.
-        q_last, v_last = np.split(context.get_discrete_state(desired).value(), 2)
-        elapsed = context.get_time() - context.get_discrete_state(sample_time).value()[0]
-        warm = q_last + elapsed * v_last
+        desired, sample_time, _, previous, previous_time = self._groups
+        last, last_time = (context.get_discrete_state(group).value() for group in (desired, sample_time))
+        discrete.set_value(previous, last)
+        discrete.set_value(previous_time, last_time)
+        # Start from where the last solution would be by the time of this one.
+        elapsed = context.get_time() + self._preview - last_time[0]
+        return self._solve_from(last[: self._n] + elapsed * last[self._n :], context, discrete)
+
+    def _solve_from(self, warm: Array, context: Context, discrete: DiscreteValues) -> EventStatus:
+        desired, sample_time, status, *_ = self._groups
         if self._posture.HasValue(context):
             q, v = np.split(self._posture.Eval(context), 2)
         else:
@@ -97,7 +126,7 @@ class InverseKinematicsSolver(LeafSystem):
             v[places] = joint_velocity(leg, solution.theta, self._V[side].Eval(context).get_coeffs(), self._parameters)
             report[i::2] = solution.residual, solution.iterations, solution.converged
         discrete.set_value(desired, np.concatenate((q, v)))
-        discrete.set_value(sample_time, [context.get_time()])
+        discrete.set_value(sample_time, [context.get_time() + self._preview])
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
 
@@ -120,6 +149,14 @@ class InverseKinematicsSolver(LeafSystem):
     def get_sample_time_output_port(self) -> OutputPort:
         """Output sample_time."""
         return self._sample_time_output
+
+    def get_previous_state_output_port(self) -> OutputPort:
+        """Output previous_state."""
+        return self._previous_state_output
+
+    def get_previous_time_output_port(self) -> OutputPort:
+        """Output previous_time."""
+        return self._previous_time_output
 
     def get_status_output_port(self) -> OutputPort:
         """Output status."""

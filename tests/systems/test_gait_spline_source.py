@@ -112,3 +112,21 @@ def test_pelvis_walks_upright_along_x(at, gait):
     steady = at(4.0)
     np.testing.assert_allclose(steady["V_WP"].get_coeffs(), [0, 0, 0, gait.ramp.speed, 0, 0])
     np.testing.assert_array_equal(steady["X_WP"].rotation().matrix(), np.eye(3))
+
+
+@given(t=times, preview=st.floats(0.0, 0.05))
+def test_a_preview_is_of_the_soles_alone(source, gait, skeleton, preview, t):
+    ahead = GaitSplineSource(gait, skeleton, preview)
+
+    def value(system, name, time):
+        context = system.CreateDefaultContext()
+        context.SetTime(time)
+        return system.GetOutputPort(name).Eval(context)
+
+    for side in ("R", "L"):
+        later = value(source, f"X_P{side}s", t + preview)
+        np.testing.assert_array_equal(value(ahead, f"X_P{side}s", t).GetAsMatrix4(), later.GetAsMatrix4())
+        later = value(source, f"V_P{side}s", t + preview)
+        np.testing.assert_array_equal(value(ahead, f"V_P{side}s", t).get_coeffs(), later.get_coeffs())
+    np.testing.assert_array_equal(value(ahead, "p_WP", t), value(source, "p_WP", t))
+    np.testing.assert_array_equal(value(ahead, "phase", t), value(source, "phase", t))

@@ -107,8 +107,7 @@ def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
     for k in range(1, 5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
         assert sample_time.Eval(simulator.get_context())[0] == pytest.approx(k * PERIOD)
-    # The update due at time zero comes with the first advance.
-    assert len(count_solutions) - at_start == 2 * 5
+    assert len(count_solutions) - at_start == 2 * 4
 
 
 def test_between_updates_nothing_changes(solver, legs):
@@ -159,13 +158,31 @@ def test_posture_passes_except_for_the_legs(solver, legs, places):
         np.testing.assert_array_equal(alone[half][~in_legs], 0.0)
 
 
-def test_seed_posture_is_where_the_first_solution_starts(plant, joints):
-    seeded = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, {"RightLegTibiaMotion": 0.7})
-    context = seeded.CreateDefaultContext()
-    q, _ = np.split(seeded.get_desired_state_output_port().Eval(context), 2)
-    assert q[joints.names.index("RightLegTibiaMotion")] == 0.7
-    assert q[joints.names.index("LeftLegTibiaMotion")] == 0.3
-    assert np.count_nonzero(q) == 2
+def test_before_the_first_solution_is_the_start_posture(plant, joints):
+    solver = InverseKinematicsSolver(
+        plant, InverseKinematicsParameters(), PERIOD, start_posture={"RightLegTibiaMotion": 0.7}
+    )
+    context = solver.CreateDefaultContext()
+    for port in (solver.get_desired_state_output_port(), solver.get_previous_state_output_port()):
+        q, v = np.split(port.Eval(context), 2)
+        assert q[joints.names.index("RightLegTibiaMotion")] == 0.7
+        assert np.count_nonzero(q) == 1
+        assert not v.any()
+
+
+def test_it_keeps_the_sample_before(plant, legs):
+    """With a preview of a period, the present is always between the previous sample and the next."""
+    solver = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, preview=PERIOD)
+    simulator = initialized(solver, fixed_context(solver, legs))
+    context = simulator.get_context()
+    times = (solver.get_previous_time_output_port(), solver.get_sample_time_output_port())
+    assert [port.Eval(context)[0] for port in times] == pytest.approx([0.0, PERIOD])
+    last = solver.get_desired_state_output_port().Eval(context).copy()
+    for k in range(1, 4):
+        simulator.AdvanceTo((k + 0.5) * PERIOD)
+        assert [port.Eval(context)[0] for port in times] == pytest.approx([k * PERIOD, (k + 1) * PERIOD])
+        np.testing.assert_array_equal(solver.get_previous_state_output_port().Eval(context), last)
+        last = solver.get_desired_state_output_port().Eval(context).copy()
 
 
 def walk(plant, gait, skeleton, period, until):

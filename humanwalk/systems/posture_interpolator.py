@@ -1,0 +1,66 @@
+"""LeafSystem: desired joint angles between two solutions of the inverse kinematics."""
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+
+from humanwalk.control.hermite import hermite_between
+
+Array = npt.NDArray[np.float64]
+
+
+class PostureInterpolator(LeafSystem):
+    """Cubic Hermite interpolation of the desired state from the previous sample to the next.
+
+    Outside the two samples it goes on with the rate of the nearer one.
+
+    Inputs:
+        previous_state, next_state: (2n) desired angles [rad], then rates [rad/s], at two times.
+        previous_time, next_time: (1) the times [s].
+
+    Outputs:
+        desired_state: (2n) the desired state of now; its rates are the time derivatives of its angles.
+    """
+
+    def __init__(self, num_joints: int) -> None:
+        """Make the interpolator for n joints."""
+        super().__init__()
+        self._inputs = {
+            name: self.DeclareVectorInputPort(name, size)
+            for name, size in (
+                ("previous_state", 2 * num_joints),
+                ("previous_time", 1),
+                ("next_state", 2 * num_joints),
+                ("next_time", 1),
+            )
+        }
+        self._output = self.DeclareVectorOutputPort(
+            "desired_state",
+            2 * num_joints,
+            self._calc,
+            prerequisites_of_calc={self.time_ticket(), self.all_input_ports_ticket()},
+        )
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        previous, t0, following, t1 = (port.Eval(context) for port in self._inputs.values())
+        output.SetFromVector(hermite_between(t0[0], previous, t1[0], following, context.get_time()))
+
+    def get_previous_state_input_port(self) -> InputPort:
+        """Input previous_state."""
+        return self._inputs["previous_state"]
+
+    def get_previous_time_input_port(self) -> InputPort:
+        """Input previous_time."""
+        return self._inputs["previous_time"]
+
+    def get_next_state_input_port(self) -> InputPort:
+        """Input next_state."""
+        return self._inputs["next_state"]
+
+    def get_next_time_input_port(self) -> InputPort:
+        """Input next_time."""
+        return self._inputs["next_time"]
+
+    def get_desired_state_output_port(self) -> OutputPort:
+        """Output desired_state."""
+        return self._output

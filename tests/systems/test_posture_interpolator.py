@@ -1,0 +1,49 @@
+"""Posture interpolator: smooth desired angles between two samples."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.control.hermite import hermite_between
+from humanwalk.systems.posture_interpolator import PostureInterpolator
+
+N = 3
+X0, X1 = np.arange(2.0 * N), np.arange(2.0 * N)[::-1] / 4
+
+
+def context_at(interpolator, t):
+    context = interpolator.CreateDefaultContext()
+    interpolator.get_previous_state_input_port().FixValue(context, X0)
+    interpolator.get_previous_time_input_port().FixValue(context, [0.10])
+    interpolator.get_next_state_input_port().FixValue(context, X1)
+    interpolator.get_next_time_input_port().FixValue(context, [0.12])
+    context.SetTime(t)
+    return context
+
+
+def test_ports():
+    interpolator = PostureInterpolator(N)
+    sizes = {
+        interpolator.get_input_port(i).get_name(): interpolator.get_input_port(i).size()
+        for i in range(interpolator.num_input_ports())
+    }
+    assert sizes == {"previous_state": 6, "previous_time": 1, "next_state": 6, "next_time": 1}
+    port = interpolator.get_desired_state_output_port()
+    assert (port.get_name(), port.size()) == ("desired_state", 6)
+
+
+@given(t=st.floats(0.0, 0.2))
+def test_desired_state_is_the_cubic_through_the_samples(t):
+    interpolator = PostureInterpolator(N)
+    context = context_at(interpolator, t)
+    expected = hermite_between(0.10, X0, 0.12, X1, t)
+    np.testing.assert_array_equal(interpolator.get_desired_state_output_port().Eval(context), expected)
+
+
+def test_time_moves_it():
+    interpolator = PostureInterpolator(N)
+    context = context_at(interpolator, 0.10)
+    port = interpolator.get_desired_state_output_port()
+    np.testing.assert_allclose(port.Eval(context), X0)
+    context.SetTime(0.12)
+    np.testing.assert_allclose(port.Eval(context), X1)
