@@ -41,6 +41,11 @@ class FrameMotion:
         bias = self.bias[3:] - cross @ self.bias[:3] + _cross_matrix(w) @ _cross_matrix(w) @ r
         return self.p_WB + r, J, velocity, bias
 
+    def along(self, p_BoP_B: Array, directions: Array) -> Array:
+        """Jacobian of the velocities of P along k directions given in W, (k, 3); shape (k, nv)."""
+        moments = directions @ _cross_matrix(self.R_WB @ p_BoP_B).T
+        return directions @ self.J[3:] + moments @ self.J[:3]
+
 
 @dataclass(frozen=True)
 class Dynamics:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import cmath
 import math
+import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import piqp
+from proxsuite import proxqp
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
@@ -19,6 +20,11 @@ from humanwalk.control.step_planner import FootReference, FootTask, WalkingRefer
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int_]
+
+TOLERANCE = 1e-4
+"""Largest residual of the optimality conditions."""
+MOST_ITERATIONS = 200
 
 
 @dataclass(frozen=True)
@@ -154,7 +160,6 @@ class WholeBodyQp:
     ) -> None:
         self.parameters = parameters
         joints = dynamics.joints
-        n = len(joints.names)
         order = np.argsort(joints.v)
         self.names = tuple(joints.names[i] for i in order)
         self._q = joints.q[order]
@@ -174,7 +179,6 @@ class WholeBodyQp:
              if sphere.body.startswith(side)]
             for side in SIDES
         ]
-        self._is_heel = [np.array([body.endswith("Ankle") for body, _ in points]) for points in self._points]
         heel = {
             side: np.mean([p for (body, p) in points if body.endswith("Ankle")], axis=0)
             for side, points in zip(SIDES, self._points, strict=True)
@@ -182,9 +186,9 @@ class WholeBodyQp:
         self._heel: Mapping[Side, Array] = heel
         mu = parameters.friction
         self._edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
-        self._num_edges = 4 * sum(len(points) for points in self._points)
-        self._n = n
-        self._solver: piqp.DenseSolver | None = None
+        self._solvers: dict[int, Any] = {}
+        # Drake keeps systems to the end of the process, and proxsuite's binding complains of solvers that live so long.
+        weakref.finalize(self, self._solvers.clear)
 
     def _posture_gains(self, name: str) -> TaskGains:
         p = self.parameters
@@ -198,7 +202,7 @@ class WholeBodyQp:
 
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
-        program, qdd0, B = self.program(body, reference, posture)
+        program, qdd0, B, points = self.program(body, reference, posture)
         x = self._solve(program)
         if x is None:
             return None
@@ -207,13 +211,19 @@ class WholeBodyQp:
         qdd[self._free] = x[:m]
         edge_forces = np.maximum(x[m:], 0.0)
         torque = (body.M @ qdd + body.h - B.T @ edge_forces)[6:]
-        forces = (edge_forces.reshape(-1, 4)[:, :, None] * self._edges).sum(axis=1)
+        forces = np.zeros((sum(len(points) for points in self._points), 3))
+        forces[points] = edge_forces.reshape(-1, 4) @ self._edges
         return WholeBodySolution(qdd, forces, np.clip(torque, -self.limits, self.limits))
 
     def program(
         self, body: Dynamics, reference: WalkingReference, posture: Posture
-    ) -> tuple[QuadraticProgram, Array, Array]:
-        """The program, the prescribed accelerations (nv,) and the contact Jacobian along the edges (edges, nv)."""
+    ) -> tuple[QuadraticProgram, Array, Array, Indices]:
+        """The program, and what makes torques of its solution.
+
+        Returns:
+            the program; the prescribed accelerations (nv,); the Jacobian along the edges of the contact forces
+            (edges, nv); the places of the points that these edges belong to.
+        """
         p = self.parameters
         q, v = body.q[self._q], body.v[6:]
         stiffness, damping, weight = self._posture
@@ -224,9 +234,9 @@ class WholeBodyQp:
         J, a, w = self._tasks(body, reference)
         a = a - J @ qdd0
         J = J[:, self._free]
-        B, most = self._contacts(body, reference)
+        points, B, most = self._contacts(body, reference)
 
-        m, k = self._free.size, self._num_edges
+        m, k = self._free.size, most.size
         free_joints = self._free_joints
         WJ = w[:, None] * J
         H = np.zeros((m + k, m + k))
@@ -253,23 +263,28 @@ class WholeBodyQp:
             H, g, A, -rest[:6], C, -self.limits[free_joints] - rest[rows], self.limits[free_joints] - rest[rows],
             x_lower, x_upper,
         )
-        return program, qdd0, B
+        return program, qdd0, B, points
 
     def _solve(self, program: QuadraticProgram) -> Array | None:
-        H, g, A, b, C, lower, upper, x_lower, x_upper = program
-        F = np.asfortranarray
-        if self._solver is None:
-            self._solver = piqp.DenseSolver()
-            self._solver.settings.eps_abs = 1e-4
-            self._solver.settings.eps_rel = 1e-4
-            self._solver.setup(F(H), g, F(A), b, F(C), lower, upper, x_lower, x_upper)
-        else:
-            self._solver.update(F(H), g, F(A), b, F(C), lower, upper, x_lower, x_upper)
-        if self._solver.solve() != piqp.PIQP_SOLVED:
-            self._solver = None
-            return None
-        x: Array = self._solver.result.x
-        return x if np.isfinite(x).all() else None
+        """Solve from the last solution with as many contacts; if that fails, once more from nothing."""
+        size = program.g.size
+        for warm in (True, False):
+            solver = self._solvers.get(size) if warm else None
+            if solver is None:
+                solver = proxqp.dense.QP(size, program.b.size, program.lower.size, True)
+                solver.settings.eps_abs = TOLERANCE
+                solver.settings.max_iter = MOST_ITERATIONS
+                solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
+                solver.init(*program)
+                self._solvers[size] = solver
+            else:
+                solver.update(*program, update_preconditioner=True)
+            solver.solve()
+            x: Array = solver.results.x
+            if solver.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED and np.isfinite(x).all():
+                return x
+        del self._solvers[size]
+        return None
 
     # Tasks: rows of J v' = a with weight w.
 
@@ -342,18 +357,26 @@ class WholeBodyQp:
         wanted = ddpitch * axis + gains.stiffness * error + gains.damping * (dpitch * axis - ankle.V_WB[:3])
         add(ankle.J[:3], wanted - ankle.bias[:3], gains.weight)
 
-    def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Array, Array]:
-        """Generalised force per edge force (edges, nv) and the largest edge forces (edges,)."""
+    def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
+        """Places of the points that may press (points,), generalised force per edge (edges, nv), largest force (edges,).
+
+        """
         p = self.parameters
-        blocks, most = [], []
-        for side, points, is_heel in zip(SIDES, self._points, self._is_heel, strict=True):
+        places, blocks, most = [], [], []
+        place = -1
+        for side, points in zip(SIDES, self._points, strict=True):
             foot = reference.foot(side)
-            for (name, p_BoP), heel in zip(points, is_heel, strict=True):
-                position, J, _, _ = body.frames[name].point(p_BoP)
-                blocks.append(self._edges @ J)
-                presses = position[2] < p.contact_height and not (heel and foot.task is FootTask.HEEL_OFF)
-                most.append(p.largest_force * foot.load if presses else 0.0)
-        return np.vstack(blocks), np.repeat(most, 4)
+            for name, p_BoP in points:
+                place += 1
+                heel_is_up = foot.task is FootTask.HEEL_OFF and name.endswith("Ankle")
+                frame = body.frames[name]
+                if foot.load <= 0.0 or heel_is_up or frame.p_WB[2] + frame.R_WB[2] @ p_BoP > p.contact_height:
+                    continue
+                places.append(place)
+                blocks.append(frame.along(p_BoP, self._edges))
+                most.append(p.largest_force * foot.load)
+        B = np.vstack(blocks) if blocks else np.zeros((0, body.v.size))
+        return np.array(places, dtype=int), B, np.repeat(most, 4)
 
 
 def is_foot_posture(joint_name: str) -> bool:

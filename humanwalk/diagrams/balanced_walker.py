@@ -77,7 +77,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     builder.Connect(feet.get_foot_forces_output_port(), planner.get_foot_forces_input_port())
     builder.Connect(command.get_command_output_port(), planner.get_command_input_port())
     builder.Connect(plant.get_state_output_port(), controller.get_state_input_port())
-    builder.Connect(planner.get_reference_output_port(), controller.get_reference_input_port())
+    builder.Connect(planner.get_plan_output_port(), controller.get_plan_input_port())
     builder.Connect(controller.get_torque_output_port(), bank.get_feedforward_input_port())
     builder.Connect(controller.get_desired_state_output_port(), bank.get_desired_state_input_port())
     builder.Connect(controller.get_sample_time_output_port(), bank.get_sample_time_input_port())

@@ -1,6 +1,7 @@
 """LeafSystem: the step planner in time."""
 
 from dataclasses import dataclass
+from typing import Self
 
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
@@ -35,6 +36,10 @@ class Plan:
     state: PlannerState | None = None
     reference: WalkingReference | None = None
 
+    def __deepcopy__(self, memo: object) -> Self:
+        """Itself: Drake copies abstract values often, and nothing in here ever changes."""
+        return self
+
 
 class GaitPlanner(LeafSystem):
     """Plans steps and balance, every control period.
@@ -48,7 +53,7 @@ class GaitPlanner(LeafSystem):
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
 
     Outputs (all show state, so reading them plans nothing):
-        reference: WalkingReference, what the body should do.
+        plan: Plan, whose reference says what the body should do.
         phase: (2) of the right and left foot: 0 at touchdown, 1 at the next; 0 in standing.
         contact_schedule: (2) 1 where the right, the left foot should be on the ground.
         balance: (9) zero-moment point, DCM, its reference and the foothold, each x, y in W [m]; then the `Phase`.
@@ -81,8 +86,8 @@ class GaitPlanner(LeafSystem):
         self._command = self.DeclareVectorInputPort("command", 3)
         self._memory = self.DeclareAbstractState(Value(Plan()))
         needs = {self.abstract_state_ticket(self._memory)}
-        self._reference_output = self.DeclareAbstractOutputPort(
-            "reference", lambda: Value(()), self._calc_reference, prerequisites_of_calc=needs
+        self._plan_output = self.DeclareAbstractOutputPort(
+            "plan", lambda: Value(Plan()), self._calc_plan, prerequisites_of_calc=needs
         )
         self._phase_output = self.DeclareVectorOutputPort("phase", 2, self._calc_phase, prerequisites_of_calc=needs)
         self._schedule_output = self.DeclareVectorOutputPort(
@@ -117,8 +122,8 @@ class GaitPlanner(LeafSystem):
         plan: Plan = context.get_abstract_state(int(self._memory)).get_value()
         return plan
 
-    def _calc_reference(self, context: Context, output: Value) -> None:
-        output.set_value(self._plan_in(context).reference or ())
+    def _calc_plan(self, context: Context, output: Value) -> None:
+        output.set_value(self._plan_in(context))
 
     def _calc_phase(self, context: Context, output: BasicVector) -> None:
         plan = self._plan_in(context)
@@ -154,9 +159,9 @@ class GaitPlanner(LeafSystem):
         """Input command."""
         return self._command
 
-    def get_reference_output_port(self) -> OutputPort:
-        """Output reference."""
-        return self._reference_output
+    def get_plan_output_port(self) -> OutputPort:
+        """Output plan."""
+        return self._plan_output
 
     def get_phase_output_port(self) -> OutputPort:
         """Output phase."""

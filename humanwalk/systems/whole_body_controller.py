@@ -12,6 +12,7 @@ from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.control.step_planner import FootTask, WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
+from humanwalk.systems.gait_planner import Plan
 
 Array = npt.NDArray[np.float64]
 
@@ -26,7 +27,7 @@ class WholeBodyController(LeafSystem):
 
     Inputs:
         state: plant state [q; v].
-        reference: WalkingReference, see GaitPlanner.
+        plan: Plan, see GaitPlanner.
 
     Outputs (all show state, so reading them solves nothing):
         torque: (n) feed-forward for the actuators, in actuator order [N m].
@@ -65,7 +66,7 @@ class WholeBodyController(LeafSystem):
         self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        self._reference = self.DeclareAbstractInputPort("reference", Value(()))
+        self._plan = self.DeclareAbstractInputPort("plan", Value(Plan()))
         groups = [self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS))]
         self._groups = groups
         self._torque_output = self.DeclareStateOutputPort("torque", groups[0])
@@ -76,7 +77,7 @@ class WholeBodyController(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
 
     def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
-        reference = self._reference.Eval(context)
+        reference = self._plan.Eval(context).reference
         state = self._state.Eval(context)
         body = self._dynamics.at(state)
         q = self._dynamics.joints.positions(state)[np.argsort(self._place)]
@@ -123,9 +124,9 @@ class WholeBodyController(LeafSystem):
         """Input state."""
         return self._state
 
-    def get_reference_input_port(self) -> InputPort:
-        """Input reference."""
-        return self._reference
+    def get_plan_input_port(self) -> InputPort:
+        """Input plan."""
+        return self._plan
 
     def get_torque_output_port(self) -> OutputPort:
         """Output torque."""
