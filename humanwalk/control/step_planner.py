@@ -110,11 +110,17 @@ class StepPlacement:
     ankle_to_middle: float = quantity(0.03, "m", -0.05, 0.1)
     """From the ankle forward to the point of the foot on which the pendulum stands."""
 
-    roll: float = quantity(0.08, "m", 0.0, 0.15)
-    """Way of the zero-moment point along the foot in single support at 1 m/s and faster; in proportion below."""
+    roll_start: float = quantity(0.0, "s", -0.2, 0.2)
+    """Zero-moment point at the beginning of single support, before the point on which the pendulum stands, per speed."""
+
+    roll_end: float = quantity(0.08, "s", 0.0, 0.3)
+    """The same at the end of single support."""
 
     foot_back: float = quantity(0.04, "m", 0.0, 0.1)
     """The zero-moment point stays this near behind the ankle."""
+
+    ball: float = quantity(0.09, "m", 0.0, 0.2)
+    """The zero-moment point stays this far before the ankle while the heel is up."""
 
     foot_front: float = quantity(0.15, "m", 0.0, 0.25)
     """And this near before it."""
@@ -504,6 +510,7 @@ class StepPlanner:
             state,
             zmp_reference + (1.0 + self.parameters.dcm_gain) * (xi - xi_reference),
             both=state.phase is Phase.DOUBLE_SUPPORT,
+            on_ball=state.phase is Phase.SINGLE_SUPPORT and self._heel_is_up(state, command),
         )
 
         rate = 1.0
@@ -548,12 +555,12 @@ class StepPlanner:
         width = max(placement.width, placement.narrowest + abs(move.imag))
         half = 0.5j * width * (1.0 + cmath.exp(1j * turn))
         along = move * cmath.exp(0.5j * turn)
-        roll = placement.roll * _clip(command.forward, 0.0, 1.0)
+        brisk = _clip(command.forward, 0.0, 2.0)
         return PeriodicGait(
             displacement=HalfSteps(left=along - half, right=along + half),
             turn=turn,
-            roll_start=0.0,
-            roll_end=roll,
+            roll_start=placement.roll_start * brisk,
+            roll_end=placement.roll_end * brisk,
             double_support=timing.double_support,
             single_support=timing.step - timing.double_support,
         )
@@ -599,9 +606,9 @@ class StepPlanner:
         timing = self.parameters.timing
         if state.walked > 0 and state.elapsed < timing.heel_strike:
             return FootReference(FootTask.HEEL_STRIKE, 1.0, state.heading)
-        begin = timing.step - timing.heel_off
-        if state.elapsed > begin and self._rises(command):
-            return self._heel_off(state.elapsed - begin, 1.0, state.heading, command)
+        if self._heel_is_up(state, command):
+            since = state.elapsed - (timing.step - timing.heel_off)
+            return self._heel_off(since, 1.0, state.heading, command)
         return FootReference(FootTask.FLAT, 1.0, state.heading)
 
     def _other_foot(self, state: PlannerState, command: Command, swing: Swing | None) -> FootReference:
@@ -622,6 +629,10 @@ class StepPlanner:
             (profile.height, profile.height_rate, profile.height_acceleration),
             (profile.pitch, profile.pitch_rate, profile.pitch_acceleration),
         )
+
+    def _heel_is_up(self, state: PlannerState, command: Command) -> bool:
+        timing = self.parameters.timing
+        return state.elapsed > timing.step - timing.heel_off and self._rises(command)
 
     def _rises(self, command: Command) -> bool:
         return self._briskness(command) > 0.5
@@ -661,8 +672,8 @@ class StepPlanner:
         """The point of a foot on which the pendulum stands."""
         return ankle + self.parameters.placement.ankle_to_middle * cmath.exp(1j * heading)
 
-    def _supported(self, state: PlannerState, zmp: complex, both: bool) -> complex:
-        """The zero-moment point, kept over the stance foot, or over both feet and between."""
+    def _supported(self, state: PlannerState, zmp: complex, both: bool, on_ball: bool = False) -> complex:
+        """The zero-moment point, kept over the stance foot or its front, or over both feet and between."""
         placement = self.parameters.placement
         anchor = state.ankle(state.stance)
         if both:
@@ -672,7 +683,7 @@ class StepPlanner:
             anchor = old + _clip(along, 0.0, 1.0) * way
         u = cmath.exp(1j * state.heading)
         local = (zmp - anchor) / u
-        x = _clip(local.real, -placement.foot_back, placement.foot_front)
+        x = _clip(local.real, placement.ball if on_ball else -placement.foot_back, placement.foot_front)
         y = _clip(local.imag, -placement.foot_half_width, placement.foot_half_width)
         return anchor + u * complex(x, y)
 
