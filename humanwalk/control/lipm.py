@@ -49,18 +49,20 @@ class ZmpSegment:
         """What is left of the segment after t [s]."""
         return ZmpSegment(self.at(t), self.end, max(self.duration - max(t, 0.0), 0.0))
 
-    def _lead(self, frequency: float) -> complex:
-        return (self.end - self.start) / (self.duration * frequency) if self.duration > 0.0 else 0.0
-
     def forward(self, xi: complex, frequency: float) -> complex:
         """DCM at the end from the DCM at the beginning."""
-        lead = self._lead(frequency)
-        return self.end + lead + (xi - self.start - lead) * math.exp(frequency * self.duration)
+        x = frequency * self.duration
+        return self.end + (xi - self.start) * math.exp(x) - (self.end - self.start) * _mean_growth(x)
 
     def backward(self, xi: complex, frequency: float) -> complex:
         """DCM at the beginning from the DCM at the end; the inverse of `forward`."""
-        lead = self._lead(frequency)
-        return self.start + lead + (xi - self.end - lead) * math.exp(-frequency * self.duration)
+        x = frequency * self.duration
+        return self.start + (xi - self.end) * math.exp(-x) + (self.end - self.start) * _mean_growth(-x)
+
+
+def _mean_growth(x: float) -> float:
+    """(exp(x) - 1) / x, also where x is next to nothing."""
+    return math.expm1(x) / x if x != 0.0 else 1.0
 
 
 def forward(segments: tuple[ZmpSegment, ...], xi: complex, frequency: float) -> complex:

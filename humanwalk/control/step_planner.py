@@ -113,7 +113,7 @@ class StepPlacement:
     roll_start: float = quantity(0.0, "s", -0.2, 0.2)
     """Zero-moment point at the beginning of single support, before the point on which the pendulum stands, per speed."""
 
-    roll_end: float = quantity(0.08, "s", 0.0, 0.3)
+    roll_end: float = quantity(0.17, "s", 0.0, 0.3)
     """The same at the end of single support."""
 
     foot_back: float = quantity(0.04, "m", 0.0, 0.1)
@@ -122,7 +122,7 @@ class StepPlacement:
     ball: float = quantity(0.09, "m", 0.0, 0.2)
     """The zero-moment point stays this far before the ankle while the heel is up."""
 
-    foot_front: float = quantity(0.15, "m", 0.0, 0.25)
+    foot_front: float = quantity(0.2, "m", 0.0, 0.4)
     """And this near before it."""
 
     foot_half_width: float = quantity(0.03, "m", 0.0, 0.1)
@@ -152,7 +152,7 @@ class StepPlannerParameters:
     dcm_gain: float = quantity(1.0, "", 0.0, 5.0)
     """The error of the DCM shrinks at this many times the pendulum's own rate, while the foot is long enough."""
 
-    speed_gain: float = quantity(0.15, "", 0.0, 1.0)
+    speed_gain: float = quantity(0.05, "", 0.0, 1.0)
     """Share of the speed error over two steps by which the next step is faster."""
 
     speed_bias_limit: float = quantity(0.3, "m/s", 0.0, 1.0)

@@ -29,8 +29,6 @@ class SwingParameters:
     landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
     """How far below the ground the swing aims, so that it ends by touching."""
 
-    heel_allowance: float = quantity(0.0, "", 0.0, 1.0)
-
     jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
     """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
 
@@ -106,7 +104,7 @@ class SwingProfile:
                 height + 0.75 * parameters.lift,
                 apex,
                 ground + 0.45 * (apex - ground),
-                ground + parameters.heel_allowance * parameters_heel(toe_up) - parameters.landing_depth,
+                ground - parameters.landing_depth,
             )
         )
         pitches = pitch + np.array(PITCH_BLEND) * (-toe_up - pitch)
@@ -124,7 +122,3 @@ class SwingProfile:
         (z, pitch), (dz, dpitch), (ddz, ddpitch) = (self.spline.derivative(u, order) for order in (0, 1, 2))
         return HeightAndPitch(z, dz * rate, ddz * rate**2, pitch, dpitch * rate, ddpitch * rate**2)
 
-
-def parameters_heel(a):
-    import math
-    return 0.068*math.cos(a)+0.043*math.sin(a)-0.068
