@@ -176,6 +176,13 @@ class Scenario:
     simulation: SimulationParameters = SimulationParameters()
     recording: RecordingParameters = RecordingParameters()
 
+    @property
+    def commanded_speed(self) -> float:
+        """Forward speed of the walk [m/s]; of a balanced one, the greatest that is asked for in either direction."""
+        if self.controller == "thesis":
+            return self.gait.ramp.speed
+        return max((point.forward for point in self.balanced.command.points), key=abs, default=0.0)
+
     def __post_init__(self) -> None:
         """Check every number against its range, and the numbers that belong together.
 

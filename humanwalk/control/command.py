@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class CommandParameters:
 
     def __post_init__(self) -> None:
         times = [point.time for point in self.points]
-        for earlier, later in zip(times, times[1:], strict=False):
+        for earlier, later in pairwise(times):
             if later <= earlier:
                 raise ParameterError(
                     f"points: time {later:g} comes after {earlier:g}; allowed: growing times; sort the points"

@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from humanwalk.body import Side
+from humanwalk.body import SIDES, Side
 from humanwalk.control.lipm import (
     GRAVITY,
     HalfSteps,
@@ -111,7 +111,7 @@ class StepPlacement:
     """From the ankle forward to the point of the foot on which the pendulum stands."""
 
     roll_start: float = quantity(0.0, "s", -0.2, 0.2)
-    """Zero-moment point at the beginning of single support, before the point on which the pendulum stands, per speed."""
+    """Zero-moment point when single support begins, before the point on which the pendulum stands, per speed."""
 
     roll_end: float = quantity(0.17, "s", 0.0, 0.3)
     """The same at the end of single support."""
@@ -485,7 +485,7 @@ class StepPlanner:
         zmp = self._supported(
             state, reference - rate / self.frequency + (1.0 + self.parameters.dcm_gain) * (xi - reference), both=True
         )
-        feet = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in ("Right", "Left")}
+        feet: dict[Side, FootReference] = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in SIDES}
         next_state = replace(state, elapsed=state.elapsed + self.period)
         next_state, height = self._height(next_state, 0.0)
         return next_state, self._reference(state, body, zmp, xi, reference, height, feet, state.middle)
@@ -532,7 +532,7 @@ class StepPlanner:
             )
             swing = replace(swing, motion=motion)
 
-        feet = {
+        feet: dict[Side, FootReference] = {
             state.stance: self._stance_foot(state, command),
             other(state.stance): self._other_foot(state, command, swing),
         }

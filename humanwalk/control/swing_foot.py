@@ -121,4 +121,3 @@ class SwingProfile:
         rate = self.spline.segments / self.duration
         (z, pitch), (dz, dpitch), (ddz, ddpitch) = (self.spline.derivative(u, order) for order in (0, 1, 2))
         return HeightAndPitch(z, dz * rate, ddz * rate**2, pitch, dpitch * rate, ddpitch * rate**2)
-

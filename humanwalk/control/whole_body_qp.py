@@ -175,8 +175,11 @@ class WholeBodyQp:
             if "LegTibia" in name:
                 self.lower[i] += parameters.knee_margin
         self._points = [
-            [(sphere.body, np.array(sphere.center) - np.array((0, 0, sphere.radius))) for sphere in spheres
-             if sphere.body.startswith(side)]
+            [
+                (sphere.body, np.array(sphere.center) - np.array((0, 0, sphere.radius)))
+                for sphere in spheres
+                if sphere.body.startswith(side)
+            ]
             for side in SIDES
         ]
         heel = {
@@ -260,8 +263,15 @@ class WholeBodyQp:
         x_upper[6:m] = np.clip(toward_upper[free_joints], -1e3, 1e4)
         x_lower[m:], x_upper[m:] = 0.0, most
         program = QuadraticProgram(
-            H, g, A, -rest[:6], C, -self.limits[free_joints] - rest[rows], self.limits[free_joints] - rest[rows],
-            x_lower, x_upper,
+            H,
+            g,
+            A,
+            -rest[:6],
+            C,
+            -self.limits[free_joints] - rest[rows],
+            self.limits[free_joints] - rest[rows],
+            x_lower,
+            x_upper,
         )
         return program, qdd0, B, points
 
@@ -302,7 +312,11 @@ class WholeBodyQp:
         height, rate, lift = reference.com_height
         c = complex(body.com[0], body.com[1])
         over_ground = com_acceleration(c, reference.zmp, body.com[2], lift)
-        up = lift + p.com_height.stiffness * (height - body.com[2]) + p.com_height.damping * (rate - body.com_velocity[2])
+        up = (
+            lift
+            + p.com_height.stiffness * (height - body.com[2])
+            + p.com_height.damping * (rate - body.com_velocity[2])
+        )
         add(body.com_J[:2], np.array((over_ground.real, over_ground.imag)) - body.com_bias[:2], p.com.weight)
         add(body.com_J[2:], np.array((up,)) - body.com_bias[2:], p.com_height.weight)
         for name, yaw, gains in (("Pelvis", reference.pelvis_yaw, p.pelvis), ("Ribs", reference.chest_yaw, p.chest)):
@@ -322,9 +336,7 @@ class WholeBodyQp:
                 angle, rate, acceleration = foot.pitch
                 error_y = axis @ _rotation_error(_rotation(foot.yaw, angle), ankle.R_WB)
                 wanted_y = (
-                    acceleration
-                    + p.heel_off.stiffness * error_y
-                    + p.heel_off.damping * (rate - axis @ ankle.V_WB[:3])
+                    acceleration + p.heel_off.stiffness * error_y + p.heel_off.damping * (rate - axis @ ankle.V_WB[:3])
                 )
                 add(axis[None, :] @ ankle.J[:3], np.array((wanted_y - axis @ ankle.bias[:3],)), p.heel_off.weight)
             elif foot.task is FootTask.HEEL_STRIKE:
@@ -345,11 +357,7 @@ class WholeBodyQp:
         velocity = np.array((way.velocity.real, way.velocity.imag, dz))
         acceleration = np.array((way.acceleration.real, way.acceleration.imag, ddz))
         gains = p.swing_position
-        wanted = (
-            acceleration
-            + gains.stiffness * (position - ankle.p_WB)
-            + gains.damping * (velocity - ankle.V_WB[3:])
-        )
+        wanted = acceleration + gains.stiffness * (position - ankle.p_WB) + gains.damping * (velocity - ankle.V_WB[3:])
         add(ankle.J[3:], wanted - ankle.bias[3:], gains.weight)
         axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
         gains = p.swing_rotation
@@ -358,9 +366,7 @@ class WholeBodyQp:
         add(ankle.J[:3], wanted - ankle.bias[:3], gains.weight)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
-        """Places of the points that may press (points,), generalised force per edge (edges, nv), largest force (edges,).
-
-        """
+        """Places of the points that may press (k,), their force per edge as generalised force (4 k, nv), its bound."""
         p = self.parameters
         places, blocks, most = [], [], []
         place = -1

@@ -55,9 +55,7 @@ class PushSource(LeafSystem):
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
         time = context.get_time()
-        output.SetFromVector(
-            np.sum([push.force for push, _ in self._pushes if push.acts_at(time)] or [np.zeros(3)], axis=0)
-        )
+        output.SetFromVector(sum((np.array(push.force) for push, _ in self._pushes if push.acts_at(time)), np.zeros(3)))
 
     def get_spatial_forces_output_port(self) -> OutputPort:
         """Output spatial_forces."""

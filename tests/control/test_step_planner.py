@@ -3,6 +3,7 @@
 import cmath
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -87,7 +88,7 @@ def test_phases_follow_each_other_and_sides_alternate():
                 stances.append(state.stance)
     assert len(stances) >= 6
     assert stances[0] == "Left"
-    assert all(later == other(earlier) for earlier, later in zip(stances, stances[1:], strict=False))
+    assert all(later == other(earlier) for earlier, later in pairwise(stances))
 
 
 def test_the_foot_that_stands_is_never_the_one_that_swings():

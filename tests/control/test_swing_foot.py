@@ -1,5 +1,7 @@
 """The foot in the air goes on as it left, arrives where and when it should, and bounds its jerk."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,8 +11,8 @@ from humanwalk.control.swing_foot import PlanarMotion, SwingParameters, SwingPro
 DT = 0.004
 
 
-def swing_to(goal_at, duration, jerk_limit=1e9, start=PlanarMotion(0.0)):
-    motion, t = start, 0.0
+def swing_to(goal_at, duration, jerk_limit=1e9):
+    motion, t = PlanarMotion(0.0), 0.0
     path = [motion]
     while t < duration - 0.5 * DT:
         motion = motion.towards(goal_at(t), duration - t, DT, jerk_limit)
@@ -34,14 +36,14 @@ def test_a_foothold_that_moves_is_reached_too():
 
 def test_velocity_is_the_derivative_of_position():
     path = swing_to(lambda t: 0.7, 0.4)
-    for before, after in zip(path, path[1:], strict=False):
+    for before, after in pairwise(path):
         mean = 0.5 * (before.velocity + after.velocity)
         assert (after.position - before.position) / DT == pytest.approx(mean, abs=0.01)
 
 
 def test_jerk_is_bounded():
     path = swing_to(lambda t: 2.0, 0.4, jerk_limit=1000.0)
-    for before, after in zip(path, path[1:], strict=False):
+    for before, after in pairwise(path):
         assert abs(after.acceleration - before.acceleration) <= 1000.0 * DT + 1e-9
 
 
