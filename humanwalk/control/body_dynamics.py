@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,8 +87,8 @@ class BodyDynamics:
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
 
-    def at(self, state: Array) -> Dynamics:
-        """The body at a plant state [q; v]."""
+    def at(self, state: Array, frames: Sequence[str]) -> Dynamics:
+        """The body at a plant state [q; v], with the frames of the bodies that are named."""
         plant, context = self.plant, self._context
         plant.SetPositionsAndVelocities(context, state)
         v = state[plant.num_positions() :]
@@ -103,7 +104,7 @@ class BodyDynamics:
             com_velocity=M[3:6] @ v / self.mass,
             com_J=M[3:6] / self.mass,
             com_bias=coriolis[3:6] / self.mass,
-            frames={name: self._frame(name, v) for name in self._frames},
+            frames={name: self._frame(name, v) for name in frames},
         )
 
     def _frame(self, name: str, v: Array) -> FrameMotion:

@@ -534,7 +534,7 @@ class StepPlanner:
 
         feet: dict[Side, FootReference] = {
             state.stance: self._stance_foot(state, command),
-            other(state.stance): self._other_foot(state, command, swing),
+            other(state.stance): self._other_foot(state, command, swing, rate),
         }
         foothold_W = swing.foothold if swing is not None else state.ankle(other(state.stance))
         next_state, height = self._height(state, command.forward)
@@ -611,7 +611,7 @@ class StepPlanner:
             return self._heel_off(since, 1.0, state.heading, command)
         return FootReference(FootTask.FLAT, 1.0, state.heading)
 
-    def _other_foot(self, state: PlannerState, command: Command, swing: Swing | None) -> FootReference:
+    def _other_foot(self, state: PlannerState, command: Command, swing: Swing | None, rate: float) -> FootReference:
         timing = self.parameters.timing
         if swing is None:
             load = max(1.0 - state.elapsed / timing.double_support, 0.0)
@@ -626,8 +626,8 @@ class StepPlanner:
             0.0,
             swing.start_yaw + _blend(progress)[0] * _wrapped(goal_yaw - swing.start_yaw),
             swing.motion,
-            (profile.height, profile.height_rate, profile.height_acceleration),
-            (profile.pitch, profile.pitch_rate, profile.pitch_acceleration),
+            (profile.height, rate * profile.height_rate, rate**2 * profile.height_acceleration),
+            (profile.pitch, rate * profile.pitch_rate, rate**2 * profile.pitch_acceleration),
         )
 
     def _heel_is_up(self, state: PlannerState, command: Command) -> bool:

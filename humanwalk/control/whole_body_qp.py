@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -15,6 +15,7 @@ from proxsuite import proxqp
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
+from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics, FrameMotion
 from humanwalk.control.step_planner import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
@@ -65,6 +66,9 @@ class WholeBodyParameters:
 
     swing_position: TaskGains = critical(300.0, 50.0)
     swing_rotation: TaskGains = critical(400.0, 20.0)
+    swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
+    """Greatest acceleration that is asked of a swinging foot: a foothold that jumps must not upset the body."""
+
     pelvis: TaskGains = critical(200.0, 20.0)
     """Rotation of the pelvis."""
 
@@ -126,10 +130,38 @@ class QuadraticProgram(NamedTuple):
 
 
 @dataclass(frozen=True)
+class SolePoints:
+    """The contact points under one body of a foot.
+
+    points: in the body's frame (k, 3) [m]. places: of these points among all that a solution's forces are given for.
+    """
+
+    side: Side
+    body: str
+    points: Array
+    places: tuple[int, ...]
+
+    @property
+    def is_heel(self) -> bool:
+        """Whether this is the hind-foot."""
+        return self.body.endswith("Ankle")
+
+
+def _soles(spheres: Sequence[ContactSphere]) -> tuple[SolePoints, ...]:
+    lowest = np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])
+    soles = []
+    for side in SIDES:
+        for body in FOOT_BODIES[side]:
+            places = tuple(i for i, sphere in enumerate(spheres) if sphere.body == body)
+            soles.append(SolePoints(side, body, lowest[list(places)], places))
+    return tuple(soles)
+
+
+@dataclass(frozen=True)
 class WholeBodySolution:
     """What the program found.
 
-    acceleration: v' of all nv velocities. forces: (points, 3) in W [N]. torque: of all joints, in the order of the
+    acceleration: v' of all nv velocities. forces: (points, 3) in W, in the order of the spheres [N]. torque: of all joints, in the order of the
     velocities from the seventh on [N m].
     """
 
@@ -174,19 +206,8 @@ class WholeBodyQp:
         for i, name in enumerate(self.names):
             if "LegTibia" in name:
                 self.lower[i] += parameters.knee_margin
-        self._points = [
-            [
-                (sphere.body, np.array(sphere.center) - np.array((0, 0, sphere.radius)))
-                for sphere in spheres
-                if sphere.body.startswith(side)
-            ]
-            for side in SIDES
-        ]
-        heel = {
-            side: np.mean([p for (body, p) in points if body.endswith("Ankle")], axis=0)
-            for side, points in zip(SIDES, self._points, strict=True)
-        }
-        self._heel: Mapping[Side, Array] = heel
+        self._soles = _soles(spheres)
+        self._heel = {sole.side: sole.points.mean(axis=0) for sole in self._soles if sole.is_heel}
         mu = parameters.friction
         self._edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
         self._solvers: dict[int, Any] = {}
@@ -203,6 +224,15 @@ class WholeBodyQp:
             return p.spine
         return p.arms
 
+    @staticmethod
+    def frames(reference: WalkingReference) -> list[str]:
+        """The bodies whose frames a program for this reference needs."""
+        names = ["Pelvis", "Ribs"]
+        for side in SIDES:
+            in_the_air = reference.foot(side).task is FootTask.SWING
+            names += [f"{side}Leg_Ankle"] if in_the_air else FOOT_BODIES[side]
+        return names
+
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
         program, qdd0, B, points = self.program(body, reference, posture)
@@ -214,7 +244,7 @@ class WholeBodyQp:
         qdd[self._free] = x[:m]
         edge_forces = np.maximum(x[m:], 0.0)
         torque = (body.M @ qdd + body.h - B.T @ edge_forces)[6:]
-        forces = np.zeros((sum(len(points) for points in self._points), 3))
+        forces = np.zeros((sum(len(sole.places) for sole in self._soles), 3))
         forces[points] = edge_forces.reshape(-1, 4) @ self._edges
         return WholeBodySolution(qdd, forces, np.clip(torque, -self.limits, self.limits))
 
@@ -358,6 +388,9 @@ class WholeBodyQp:
         acceleration = np.array((way.acceleration.real, way.acceleration.imag, ddz))
         gains = p.swing_position
         wanted = acceleration + gains.stiffness * (position - ankle.p_WB) + gains.damping * (velocity - ankle.V_WB[3:])
+        size = math.sqrt(wanted @ wanted)
+        if size > p.swing_acceleration_limit:
+            wanted *= p.swing_acceleration_limit / size
         add(ankle.J[3:], wanted - ankle.bias[3:], gains.weight)
         axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
         gains = p.swing_rotation
@@ -369,18 +402,17 @@ class WholeBodyQp:
         """Places of the points that may press (k,), their force per edge as generalised force (4 k, nv), its bound."""
         p = self.parameters
         places, blocks, most = [], [], []
-        place = -1
-        for side, points in zip(SIDES, self._points, strict=True):
-            foot = reference.foot(side)
-            for name, p_BoP in points:
-                place += 1
-                heel_is_up = foot.task is FootTask.HEEL_OFF and name.endswith("Ankle")
-                frame = body.frames[name]
-                if foot.load <= 0.0 or heel_is_up or frame.p_WB[2] + frame.R_WB[2] @ p_BoP > p.contact_height:
-                    continue
-                places.append(place)
-                blocks.append(frame.along(p_BoP, self._edges))
-                most.append(p.largest_force * foot.load)
+        for sole in self._soles:
+            foot = reference.foot(sole.side)
+            if foot.load <= 0.0 or (foot.task is FootTask.HEEL_OFF and sole.is_heel):
+                continue
+            frame = body.frames[sole.body]
+            low = frame.p_WB[2] + sole.points @ frame.R_WB[2] < p.contact_height
+            for place, p_BoP, is_low in zip(sole.places, sole.points, low, strict=True):
+                if is_low:
+                    places.append(place)
+                    blocks.append(frame.along(p_BoP, self._edges))
+                    most.append(p.largest_force * foot.load)
         B = np.vstack(blocks) if blocks else np.zeros((0, body.v.size))
         return np.array(places, dtype=int), B, np.repeat(most, 4)
 

@@ -61,6 +61,7 @@ class WholeBodyController(LeafSystem):
         joints = self._dynamics.joints
         self._n = n = len(joints.names)
         self._place = joints.v - 6
+        self._order = np.argsort(self._place)
         self._index = {name: i for i, name in enumerate(self._qp.names)}
         self._rest = np.array([posture.get(name, 0.0) for name in self._qp.names])
         self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
@@ -79,13 +80,13 @@ class WholeBodyController(LeafSystem):
     def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context).reference
         state = self._state.Eval(context)
-        body = self._dynamics.at(state)
-        q = self._dynamics.joints.positions(state)[np.argsort(self._place)]
+        body = self._dynamics.at(state, self._qp.frames(reference))
+        q = self._dynamics.joints.positions(state)[self._order]
         v = body.v[6:]
         posture = self._posture(reference)
         solution = self._qp.solve(body, reference, posture)
 
-        torque = context.get_discrete_state(self._groups[0]).value()[np.argsort(self._place)]
+        torque = context.get_discrete_state(self._groups[0]).value()[self._order]
         _, failures, in_a_row = context.get_discrete_state(self._groups[3]).value()
         if solution is not None:
             torque, in_a_row = solution.torque, 0
