@@ -58,6 +58,9 @@ class WholeBodyParameters:
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
     """Feet on the ground do not move."""
 
+    sinking_speed: float = quantity(0.5, "m/s", 0.0, 2.0)
+    """A foot that should stand and is still in the air goes down this fast."""
+
     heel_strike: TaskGains = critical(600.0, 1000.0)
     """Rotation of a foot that landed on its heel."""
 
@@ -67,7 +70,7 @@ class WholeBodyParameters:
     swing_position: TaskGains = critical(300.0, 50.0)
     swing_rotation: TaskGains = critical(400.0, 20.0)
     swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
-    """Greatest acceleration that is asked of a swinging foot: a foothold that jumps must not upset the body."""
+    """Greatest level acceleration that is asked of a swinging foot: a foothold that jumps must not upset the body."""
 
     pelvis: TaskGains = critical(200.0, 20.0)
     """Rotation of the pelvis."""
@@ -370,14 +373,21 @@ class WholeBodyQp:
                 )
                 add(axis[None, :] @ ankle.J[:3], np.array((wanted_y - axis @ ankle.bias[:3],)), p.heel_off.weight)
             elif foot.task is FootTask.HEEL_STRIKE:
-                _, J, velocity, bias = ankle.point(self._heel[side])
-                add(J, -p.stance.damping * velocity - bias, p.stance.weight)
+                heel, J, velocity, bias = ankle.point(self._heel[side])
+                add(J, p.stance.damping * (self._sinking(heel[2]) - velocity) - bias, p.stance.weight)
                 error = _rotation_error(_rotation(foot.yaw, 0.0), ankle.R_WB)
                 wanted = p.heel_strike.stiffness * error - p.heel_strike.damping * ankle.V_WB[:3]
                 add(ankle.J[:3], wanted - ankle.bias[:3], p.heel_strike.weight)
             else:
-                add(ankle.J, -p.stance.damping * ankle.V_WB - ankle.bias, p.stance.weight)
+                heel = ankle.p_WB + ankle.R_WB @ self._heel[side]
+                wanted = np.concatenate((np.zeros(3), self._sinking(heel[2]))) - ankle.V_WB
+                add(ankle.J, p.stance.damping * wanted - ankle.bias, p.stance.weight)
         return np.vstack(Js), np.concatenate(accelerations), np.array(weights)
+
+    def _sinking(self, height: float) -> Array:
+        """Velocity of a foot that should stand: none, or down where it has not reached the ground yet."""
+        late = height > self.parameters.contact_height
+        return np.array((0.0, 0.0, -self.parameters.sinking_speed if late else 0.0))
 
     def _add_swing(self, add: object, foot: FootReference, ankle: FrameMotion) -> None:
         p = self.parameters
@@ -388,9 +398,9 @@ class WholeBodyQp:
         acceleration = np.array((way.acceleration.real, way.acceleration.imag, ddz))
         gains = p.swing_position
         wanted = acceleration + gains.stiffness * (position - ankle.p_WB) + gains.damping * (velocity - ankle.V_WB[3:])
-        size = math.sqrt(wanted @ wanted)
-        if size > p.swing_acceleration_limit:
-            wanted *= p.swing_acceleration_limit / size
+        over_ground = math.hypot(wanted[0], wanted[1])
+        if over_ground > p.swing_acceleration_limit:
+            wanted[:2] *= p.swing_acceleration_limit / over_ground
         add(ankle.J[3:], wanted - ankle.bias[3:], gains.weight)
         axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
         gains = p.swing_rotation
