@@ -52,8 +52,10 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
         "qp_failures": int(signals["qp.failures"].to_numpy().max()),
         "realtime_factor": float(time[-1]) / outcome.wall_time,
     }
-    print("  ".join(f"{key} {value:.3f}" if isinstance(value, float) else f"{value}" for key, value in row.items()),
-          flush=True)
+    print(
+        "  ".join(f"{key} {value:.3f}" if isinstance(value, float) else f"{value}" for key, value in row.items()),
+        flush=True,
+    )
     return row
 
 

@@ -110,11 +110,8 @@ class StepPlacement:
     ankle_to_middle: float = quantity(0.03, "m", -0.05, 0.1)
     """From the ankle forward to the point of the foot on which the pendulum stands."""
 
-    roll_start: float = quantity(0.0, "s", -0.2, 0.2)
-    """Zero-moment point when single support begins, before the point on which the pendulum stands, per speed."""
-
     roll_end: float = quantity(0.17, "s", 0.0, 0.3)
-    """The same at the end of single support."""
+    """Zero-moment point when single support ends, before the point on which the pendulum stands, per speed."""
 
     foot_back: float = quantity(0.04, "m", 0.0, 0.1)
     """The zero-moment point stays this near behind the ankle."""
@@ -559,7 +556,7 @@ class StepPlanner:
         return PeriodicGait(
             displacement=HalfSteps(left=along - half, right=along + half),
             turn=turn,
-            roll_start=placement.roll_start * brisk,
+            roll_start=0.0,
             roll_end=placement.roll_end * brisk,
             double_support=timing.double_support,
             single_support=timing.step - timing.double_support,

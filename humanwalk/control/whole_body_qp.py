@@ -51,10 +51,12 @@ def critical(stiffness: float, weight: float) -> TaskGains:
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com: TaskGains = TaskGains(0.0, 0.0, 30.0)
-    """Centre of mass over ground; its acceleration follows from the zero-moment point alone."""
+    com_weight: float = quantity(30.0, "", 0.0, 1e5)
+    """Weight of the centre of mass over ground; its acceleration follows from the zero-moment point alone."""
 
     com_height: TaskGains = critical(100.0, 10.0)
+    """Height of the centre of mass."""
+
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
     """Feet on the ground do not move."""
 
@@ -68,7 +70,11 @@ class WholeBodyParameters:
     """Pitch of a foot whose heel rises."""
 
     swing_position: TaskGains = critical(300.0, 50.0)
+    """Position of the swinging foot's ankle."""
+
     swing_rotation: TaskGains = critical(400.0, 20.0)
+    """Rotation of the swinging foot."""
+
     swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
     """Greatest level acceleration that is asked of a swinging foot: a foothold that jumps must not upset the body."""
 
@@ -88,7 +94,7 @@ class WholeBodyParameters:
     """Posture of hips, knees and ankles; only makes the solution unique."""
 
     arms: TaskGains = critical(60.0, 1.0)
-    """Posture of arms, shoulder girdle, neck and head, which is followed exactly: the rest works around it."""
+    """Posture of arms, shoulder girdle, neck and head, which is prescribed: its weight does not count."""
 
     effort: float = quantity(1e-4, "", 0.0, 1.0)
     """Cost per squared joint acceleration."""
@@ -350,7 +356,7 @@ class WholeBodyQp:
             + p.com_height.stiffness * (height - body.com[2])
             + p.com_height.damping * (rate - body.com_velocity[2])
         )
-        add(body.com_J[:2], np.array((over_ground.real, over_ground.imag)) - body.com_bias[:2], p.com.weight)
+        add(body.com_J[:2], np.array((over_ground.real, over_ground.imag)) - body.com_bias[:2], p.com_weight)
         add(body.com_J[2:], np.array((up,)) - body.com_bias[2:], p.com_height.weight)
         for name, yaw, gains in (("Pelvis", reference.pelvis_yaw, p.pelvis), ("Ribs", reference.chest_yaw, p.chest)):
             frame = body.frames[name]
