@@ -29,7 +29,7 @@ class SwingParameters:
     landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
     """How far below the ground the swing aims, so that it ends by touching."""
 
-    jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
+    jerk_limit: float = quantity(20000.0, "m/s3", 500.0, 50000.0)
     """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
 
 

@@ -51,10 +51,10 @@ def critical(stiffness: float, weight: float) -> TaskGains:
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(30.0, "", 0.0, 1e5)
+    com_weight: float = quantity(50.0, "", 0.0, 1e5)
     """Weight of the centre of mass over ground; its acceleration follows from the zero-moment point alone."""
 
-    com_height: TaskGains = critical(100.0, 10.0)
+    com_height: TaskGains = critical(100.0, 50.0)
     """Height of the centre of mass."""
 
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
@@ -170,8 +170,9 @@ def _soles(spheres: Sequence[ContactSphere]) -> tuple[SolePoints, ...]:
 class WholeBodySolution:
     """What the program found.
 
-    acceleration: v' of all nv velocities. forces: (points, 3) in W, in the order of the spheres [N]. torque: of all joints, in the order of the
-    velocities from the seventh on [N m].
+    acceleration: v' of all nv velocities.
+    forces: (points, 3) in W, in the order of the spheres [N].
+    torque: of all joints, in the order of the velocities from the seventh on [N m].
     """
 
     acceleration: Array

@@ -8,10 +8,10 @@ from humanwalk.diagrams.choose import make_diagram
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, parse_scenario
 
-PORTS = (
-    "state query_object contact_results net_actuation saturated desired_state phase contact_schedule soles com "
-    "foot_forces command balance qp_status push"
-).split()
+PORTS = [
+    *("state", "query_object", "contact_results", "net_actuation", "saturated", "desired_state", "phase"),
+    *("contact_schedule", "soles", "com", "foot_forces", "command", "balance", "qp_status", "push"),
+]
 
 
 def test_it_exports_what_a_run_records():
