@@ -65,6 +65,10 @@ def _numbers(parameters: Any, path: str) -> Iterator[tuple[str, float, Mapping[s
             yield name, value, field.metadata
         elif dataclasses.is_dataclass(value):
             yield from _numbers(value, name)
+        elif isinstance(value, tuple):
+            for place, item in enumerate(value):
+                if dataclasses.is_dataclass(item):
+                    yield from _numbers(item, f"{name}.{place}")
         elif isinstance(value, Mapping):
             for key, item in value.items():
                 if dataclasses.is_dataclass(item):

@@ -25,14 +25,19 @@ from pydrake.common.yaml import yaml_dump, yaml_load
 from humanwalk.body.plant import Subject
 from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBodyBalanceParameters
 from humanwalk.control.balance_support import BalanceSupportParameters
+from humanwalk.control.command import CommandParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.pd_control import ActuatorParameters
+from humanwalk.control.push import PushParameters
+from humanwalk.control.step_planner import StepPlannerParameters
+from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
 Contact = Literal["point", "hydroelastic"]
+Controller = Literal["thesis", "balanced"]
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,32 @@ class BalanceParameters:
 
     upper_body: UpperBodyBalanceParameters = UpperBodyBalanceParameters()
     """Level 2 of the thesis."""
+
+
+@dataclass(frozen=True)
+class BalancedWalkParameters:
+    """The walk without external force; counts with `controller: balanced`."""
+
+    command: CommandParameters = CommandParameters()
+    """Speed and heading over time."""
+
+    planner: StepPlannerParameters = StepPlannerParameters()
+    """Steps and balance."""
+
+    whole_body: WholeBodyParameters = WholeBodyParameters()
+    """Joint torques."""
+
+    joint_damping: float = quantity(1.0, "N m s/rad", 0.0, 100.0)
+    """Damping of every joint towards the planned rate, by the plant's implicit law."""
+
+    foot_stiffness: float = quantity(500.0, "N m/rad", 0.0, 1e5)
+    """Stiffness of ankle twist, mid-foot and toes, which the planner does not steer."""
+
+    foot_damping: float = quantity(10.0, "N m s/rad", 0.0, 1e3)
+    """Damping of the same."""
+
+    control_period: float = quantity(0.004, "s", 0.001, 0.01)
+    """Time between two plans and solutions."""
 
 
 @dataclass(frozen=True)
@@ -131,13 +162,27 @@ class Scenario:
     subject: Subject = Subject()
     """Whose body."""
 
+    controller: Controller = "thesis"
+    """`thesis`: foot paths by inverse kinematics, balance assumed; `balanced`: no external force."""
+
     gait: GaitParameters = GaitParameters()
+    balanced: BalancedWalkParameters = BalancedWalkParameters()
+    pushes: PushParameters = PushParameters()
+    """Pushes against the body, with `controller: balanced`."""
+
     start: StartParameters = StartParameters()
     inverse_kinematics: InverseKinematicsParameters = InverseKinematicsParameters()
     actuators: ActuatorParameters = ActuatorParameters()
     balance: BalanceParameters = BalanceParameters()
     simulation: SimulationParameters = SimulationParameters()
     recording: RecordingParameters = RecordingParameters()
+
+    @property
+    def commanded_speed(self) -> float:
+        """Forward speed of the walk [m/s]; of a balanced one, the greatest that is asked for in either direction."""
+        if self.controller == "thesis":
+            return self.gait.ramp.speed
+        return max((point.forward for point in self.balanced.command.points), key=abs, default=0.0)
 
     def __post_init__(self) -> None:
         """Check every number against its range, and the numbers that belong together.
@@ -253,6 +298,11 @@ def _build(kind: Any, value: Any, path: str) -> Any:
                 f"{_did_you_mean(_shown(value), choices)}"
             )
         return value
+    if origin is tuple:
+        item = typing.get_args(kind)[0]
+        if not isinstance(value, list | tuple):
+            raise ParameterError(f"{path}: {_shown(value)} is no list; allowed: entries that begin with a dash")
+        return tuple(_build(item, entry, f"{path}.{place}") for place, entry in enumerate(value))
     if origin in (dict, Mapping):
         item = typing.get_args(kind)[1]
         if not isinstance(value, dict):

@@ -1,5 +1,6 @@
 """The subject on level ground: a MultibodyPlant with contact and actuators as the scenario asks."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +23,9 @@ from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import joint_gains
+from humanwalk.control.whole_body_qp import is_foot_posture
 from humanwalk.diagrams.ground import add_level_ground
-from humanwalk.scenario import Contact, Scenario
+from humanwalk.scenario import BalancedWalkParameters, Contact, Scenario
 from humanwalk.systems.pd_actuator_bank import install_gains
 
 Array = npt.NDArray[np.float64]
@@ -78,8 +80,16 @@ def human_gains(scenario: Scenario) -> tuple[Array, Array]:
     """kp and kd of the scenario's actuators, shape (42,) each, with the inertia of neutral standing."""
     plant = kinematics_plant(scenario.subject)
     joints = JointMap.of(plant)
+    if scenario.controller == "balanced":
+        return balanced_gains(joints.names, scenario.balanced)
     inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
     return joint_gains(joints.names, inertia, scenario.actuators)
+
+
+def balanced_gains(joint_names: Sequence[str], walk: BalancedWalkParameters) -> tuple[Array, Array]:
+    """kp and kd of the balanced walker: only the small joints of the feet are held, the rest is damped."""
+    held = np.array([is_foot_posture(name) for name in joint_names])
+    return np.where(held, walk.foot_stiffness, 0.0), np.where(held, walk.foot_damping, walk.joint_damping)
 
 
 def keep_one_contact_set(plant: MultibodyPlant, scene_graph: SceneGraph, contact: Contact) -> None:

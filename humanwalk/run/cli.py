@@ -103,7 +103,7 @@ def scenarios() -> None:
     table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "what it is")
     for name in shipped_scenarios():
         loaded = load_scenario(name)
-        table.add_row(name, f"{loaded.duration:g}", f"{loaded.gait.ramp.speed:g}", loaded.contact, loaded.description)
+        table.add_row(name, f"{loaded.duration:g}", f"{loaded.commanded_speed:g}", loaded.contact, loaded.description)
     Console().print(table)
 
 
@@ -133,11 +133,11 @@ def diagram(
     depth: Annotated[int, typer.Option(min=0, max=5, help="How many levels of diagrams to open.")] = 1,
 ) -> None:
     """Draw the block diagram of a scenario's systems."""
-    from humanwalk.diagrams.walker import make_walker
+    from humanwalk.diagrams.choose import make_diagram
     from humanwalk.run.diagram_picture import draw_diagram
     from humanwalk.scenario import load_scenario
 
-    draw_diagram(make_walker(load_scenario(scenario, _overrides(set_))), output, depth)
+    draw_diagram(make_diagram(load_scenario(scenario, _overrides(set_))), output, depth)
     console.print(f"{output}")
 
 

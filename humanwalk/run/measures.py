@@ -25,6 +25,9 @@ CONTACT_OFF_N = 20.0
 SHORTEST_PHASE_S = 0.05
 """Contact or flight of a foot shorter than this is a bounce and no event [s]."""
 
+SETTLING = 2.0
+"""Time that the balanced walk takes to settle after its first ramp [s]."""
+
 GRAVITY = UniformGravityFieldElement.kDefaultStrength
 
 
@@ -39,7 +42,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     steady = time >= steady_from(scenario)
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
-    supported = scenario.balance.support.enabled
+    supported = scenario.controller == "thesis" and scenario.balance.support.enabled
     summary = {
         "scenario": scenario_name,
         "description": scenario.description,
@@ -50,7 +53,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "steady_from_s": steady_from(scenario),
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
-        "commanded_speed_m_s": scenario.gait.ramp.speed,
+        "commanded_speed_m_s": scenario.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
         "foot_lift_m": {side.lower(): foot_lift(signals, side) for side in SIDES},
         "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
@@ -62,7 +65,8 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "peak_torque_N_m": {name: float(np.abs(signals[f"{name}.torque_N_m"].to_numpy()).max()) for name in joints},
         "saturated_share": {name: float(signals[f"{name}.saturated"].to_numpy().mean()) for name in joints},
         "tracking_error_rad": {name: tracking_error(signals, name, steady) for name in joints},
-        "ik_converged_share": float(matrix(signals, [f"{side.lower()}_leg.ik_converged" for side in SIDES]).mean()),
+        "ik_converged_share": ik_converged_share(signals),
+        "qp_failures": qp_failures(signals),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
         "wall_time_s": outcome.wall_time,
         "realtime_factor": float(time[-1]) / outcome.wall_time,
@@ -74,6 +78,11 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
 
 def steady_from(scenario: Scenario) -> float:
     """Time [s] from which the walk is steady: the ramp is over and the first foot has landed."""
+    if scenario.controller == "balanced":
+        command = scenario.balanced.command
+        first = command.points[0]
+        ramp = abs(complex(first.forward, first.sideways)) / command.acceleration
+        return first.time + scenario.balanced.planner.timing.weight_shift + ramp + SETTLING
     return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
 
 
@@ -131,11 +140,25 @@ def foot_line_error(signals: pa.Table, side: str) -> float:
 
 def pelvis_tracking(signals: pa.Table, rows: npt.NDArray[np.bool_]) -> float | None:
     """Root mean square distance of the pelvis from its walking reference [m]."""
-    if not rows.any():
+    if not rows.any() or "pelvis.reference_x_m" not in signals.column_names:
         return None
     actual = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"])
     wanted = matrix(signals, [f"pelvis.reference_{axis}_m" for axis in "xyz"])
     return float(np.sqrt(((actual - wanted)[rows] ** 2).sum(axis=1).mean()))
+
+
+def ik_converged_share(signals: pa.Table) -> float | None:
+    """Share of the solutions of the inverse kinematics that converged; null for a walk that has none."""
+    columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
+    return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
+
+
+def qp_failures(signals: pa.Table) -> int | None:
+    """How often the whole-body program had no solution; null for a walk that has none."""
+    if "qp.failures" not in signals.column_names:
+        return None
+    counts = signals["qp.failures"].to_numpy()
+    return int(counts[np.isfinite(counts)].max(initial=0))
 
 
 def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -> float | None:

@@ -63,6 +63,13 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
             "balance.alpha_forward_rate_rad_s",
             "balance.alpha_left_rate_rad_s",
         ],
+        "command": ["command.forward_m_s", "command.sideways_m_s", "command.turn_rad_s"],
+        "balance": [
+            *(f"{point}.{axis}_m" for point in ("zmp", "dcm", "dcm_reference", "foothold") for axis in "xy"),
+            "planner.phase",
+        ],
+        "qp_status": ["qp.solved", "qp.failures", "qp.failures_in_a_row"],
+        "push": _xyz("push.force_", "N"),
     }
 
 

@@ -11,7 +11,7 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.control.joint_map import JointMap
-from humanwalk.diagrams.walker import make_walker
+from humanwalk.diagrams.choose import make_diagram
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.replay import add_visualizer
 from humanwalk.run.signals import Recorder
@@ -61,7 +61,7 @@ def simulate(
         ParameterError: the scenario cannot be simulated, with a mend.
     """
     builder = DiagramBuilder()
-    walker = builder.AddNamedSystem("walker", make_walker(scenario))
+    walker = builder.AddNamedSystem("walker", make_diagram(scenario))
     plant = walker.GetSubsystemByName("plant")
     assert isinstance(plant, MultibodyPlant)
     recorder = Recorder.add_to(builder, walker, JointMap.of(plant), scenario.recording.signal_period)

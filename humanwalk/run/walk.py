@@ -81,6 +81,8 @@ def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: b
         # Started late, so that a scenario that cannot be simulated is answered with a line and no bar.
         if not progress.live.is_started:
             progress.start()
+            if not console.is_terminal:
+                console.print(f"{name}: walking {scenario.duration:g} s")
         progress.update(task, completed=time)
 
     try:
@@ -116,6 +118,8 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     if summary["external_support"]:
         row("EXTERNAL SUPPORT force, rms", summary["support_force_rms_N"], ".0f", "N")
         row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
+    if summary["qp_failures"] is not None:
+        row("whole-body programs without solution", summary["qp_failures"], "d", "")
     name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
     row(f"peak torque, {name}", torque, ".0f", "N m")
     row("cost of transport", summary["cost_of_transport"], ".2f", "")

@@ -1,0 +1,67 @@
+"""Pushes against the body, as data."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from humanwalk.quantity import quantity
+
+
+@dataclass(frozen=True)
+class Push:
+    """A constant force on the centre of mass of one body for a short time."""
+
+    time: float = quantity(5.0, "s", 0.0, 3600.0)
+    """When it begins."""
+
+    duration: float = quantity(0.1, "s", 0.001, 60.0)
+    impulse: float = quantity(30.0, "N s", 0.0, 1000.0)
+    """Force times duration."""
+
+    direction: float = quantity(0.0, "rad", -2.0 * math.pi, 2.0 * math.pi)
+    """Of the force in the level plane: 0 forward along x, pi/2 to the left."""
+
+    body: str = "Ribs"
+    """Which body is pushed."""
+
+    @property
+    def force(self) -> tuple[float, float, float]:
+        """In W [N]."""
+        size = self.impulse / self.duration
+        return (size * math.cos(self.direction), size * math.sin(self.direction), 0.0)
+
+    def acts_at(self, time: float) -> bool:
+        """Whether the push acts at a time [s]."""
+        return self.time <= time < self.time + self.duration
+
+
+@dataclass(frozen=True)
+class PushParameters:
+    """Pushes at given times, and pushes from everywhere at random times."""
+
+    pushes: tuple[Push, ...] = ()
+
+    random_interval: float = quantity(0.0, "s", 0.0, 600.0)
+    """Mean time between random pushes, drawn from the scenario's seed; 0 for none."""
+
+    random_impulse: float = quantity(20.0, "N s", 0.0, 1000.0)
+    """Greatest impulse of a random push; its size is uniform up to it."""
+
+    random_until: float = quantity(60.0, "s", 0.0, 3600.0)
+    """Random pushes end here."""
+
+
+def pushes_of(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
+    """All pushes, those that are random drawn from `seed`."""
+    drawn = []
+    if parameters.random_interval > 0.0:
+        random = np.random.default_rng(seed)
+        time = random.exponential(parameters.random_interval)
+        while time < parameters.random_until:
+            impulse, direction = random.uniform(0.0, parameters.random_impulse), random.uniform(-math.pi, math.pi)
+            drawn.append(Push(time=time, impulse=impulse, direction=direction))
+            time += random.exponential(parameters.random_interval)
+    return (*parameters.pushes, *drawn)

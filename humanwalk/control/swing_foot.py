@@ -1,0 +1,123 @@
+"""The foot in the air: towards a foothold that may move, over a Hermite spline of height and pitch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from humanwalk.gait.splines import CubicHermite, hermite_tangents
+from humanwalk.quantity import quantity
+
+PITCH_BLEND = (0.0, 0.135, 0.603, 0.965, 1.0)
+"""Share of the pitch's way at the quarters of the swing: a quintic that is done at nine tenths of it."""
+
+
+@dataclass(frozen=True)
+class SwingParameters:
+    """Shape of the swing."""
+
+    lift: float = quantity(0.05, "m", 0.0, 0.3)
+    """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
+
+    toe_up: float = quantity(0.25, "rad", 0.0, 0.6)
+    """Pitch of the foot at heel strike when walking at 1 m/s and faster; in proportion below."""
+
+    landing_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
+    """Downward speed of the ankle at the planned touchdown."""
+
+    landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
+    """How far below the ground the swing aims, so that it ends by touching."""
+
+    jerk_limit: float = quantity(20000.0, "m/s3", 500.0, 50000.0)
+    """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
+
+
+@dataclass(frozen=True)
+class PlanarMotion:
+    """Position, velocity and acceleration of a point over ground, complex [m, m/s, m/s2]."""
+
+    position: complex
+    velocity: complex = 0.0
+    acceleration: complex = 0.0
+
+    def towards(self, goal: complex, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
+        """The motion `dt` later on the quintic that comes to rest at `goal` in `remaining` seconds.
+
+        The quintic is made anew at every call, so that the goal may move; its jerk is bounded.
+        """
+        r = max(remaining, 2.0 * dt)
+        jerk = 60.0 * (goal - self.position) / r**3 - 36.0 * self.velocity / r**2 - 9.0 * self.acceleration / r
+        if abs(jerk) > jerk_limit:
+            jerk *= jerk_limit / abs(jerk)
+        return PlanarMotion(
+            self.position + dt * (self.velocity + dt * (self.acceleration / 2.0 + dt * jerk / 6.0)),
+            self.velocity + dt * (self.acceleration + dt * jerk / 2.0),
+            self.acceleration + dt * jerk,
+        )
+
+
+@dataclass(frozen=True)
+class HeightAndPitch:
+    """Height of the ankle [m] and pitch of the foot [rad, toes down positive] with rates and accelerations."""
+
+    height: float
+    height_rate: float
+    height_acceleration: float
+    pitch: float
+    pitch_rate: float
+    pitch_acceleration: float
+
+
+@dataclass(frozen=True)
+class SwingProfile:
+    """Height and pitch of a swinging foot over its progress from 0 at lift-off to 1 at touchdown."""
+
+    spline: CubicHermite
+    duration: float
+
+    @staticmethod
+    def from_lift_off(
+        height: float,
+        height_rate: float,
+        pitch: float,
+        pitch_rate: float,
+        ground: float,
+        toe_up: float,
+        duration: float,
+        parameters: SwingParameters,
+    ) -> SwingProfile:
+        """The profile that carries on from a foot as it is at lift-off.
+
+        Args:
+            height, height_rate: of the ankle [m, m/s].
+            pitch, pitch_rate: of the foot [rad, rad/s].
+            ground: height of the ankle over which the foot stands flat [m].
+            toe_up: pitch at touchdown, toes up positive [rad].
+            duration: of the swing [s].
+            parameters: its shape.
+        """
+        apex = height + parameters.lift
+        heights = np.array(
+            (
+                height,
+                height + 0.75 * parameters.lift,
+                apex,
+                ground + 0.45 * (apex - ground),
+                ground - parameters.landing_depth,
+            )
+        )
+        pitches = pitch + np.array(PITCH_BLEND) * (-toe_up - pitch)
+        points = np.column_stack((heights, pitches))
+        tangents = hermite_tangents(points)
+        quarter = duration / (len(points) - 1)
+        tangents[0] = height_rate * quarter, pitch_rate * quarter
+        tangents[-1] = -parameters.landing_speed * quarter, 0.0
+        return SwingProfile(CubicHermite(points, tangents), duration)
+
+    def at(self, progress: float) -> HeightAndPitch:
+        """The profile at a progress in [0, 1]; beyond, it stays at its ends' values."""
+        u = min(max(progress, 0.0), 1.0) * self.spline.segments
+        rate = self.spline.segments / self.duration
+        (z, pitch), (dz, dpitch), (ddz, ddpitch) = (self.spline.derivative(u, order) for order in (0, 1, 2))
+        return HeightAndPitch(z, dz * rate, ddz * rate**2, pitch, dpitch * rate, ddpitch * rate**2)

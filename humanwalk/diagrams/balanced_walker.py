@@ -1,0 +1,110 @@
+"""The walker on its own feet as a Diagram: command, step planner, whole-body controller, PD actuators, plant."""
+
+from dataclasses import replace
+
+from pydrake.systems.framework import Diagram, DiagramBuilder
+
+from humanwalk.body import SIDES
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.diagrams.start import start_positions
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import Scenario
+from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.systems.command_source import CommandSource
+from humanwalk.systems.foot_force_observer import FootForceObserver
+from humanwalk.systems.gait_planner import GaitPlanner
+from humanwalk.systems.pd_actuator_bank import PdActuatorBank
+from humanwalk.systems.push_source import PushSource
+from humanwalk.systems.whole_body_controller import WholeBodyController
+
+START_FLEXION = 0.12
+"""Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
+
+
+def make_balanced_walker(scenario: Scenario) -> Diagram:
+    """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
+
+    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
+    foot_force_observer.
+
+    Exported outputs, joints in actuator order, named as those of `make_walker`:
+        state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
+        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16);
+    and its own:
+        command (3): see CommandSource.
+        balance (9): see GaitPlanner.
+        qp_status (3): see WholeBodyController.
+        push (3): force of the pushes [N].
+
+    Raises:
+        ParameterError: the scenario's start cannot be reached, or it asks for what this walker cannot do.
+    """
+    if scenario.simulation.integrator != "discrete" or scenario.actuators.law != "implicit":
+        raise ParameterError(
+            "controller: balanced needs the discrete plant and its implicit actuators; allowed: "
+            "simulation.integrator: discrete with actuators.law: implicit; set both"
+        )
+    builder = DiagramBuilder()
+    human = add_human_plant(builder, scenario)
+    plant, model = human.plant, kinematics_plant(scenario.subject)
+    stance = {
+        f"{side}Leg{joint}Motion": times * START_FLEXION
+        for side in SIDES
+        for joint, times in (("Femur", 1.0), ("Tibia", 2.0), ("Ankle", 1.0))
+    }
+    start = replace(scenario.start, joint_angles=stance | scenario.start.joint_angles)
+    plant.SetDefaultPositions(start_positions(replace(scenario, start=start)))
+
+    walk = scenario.balanced
+    command = builder.AddNamedSystem("command", CommandSource(walk.command))
+    planner = builder.AddNamedSystem(
+        "planner", GaitPlanner(model, walk.planner, scenario.gait.first_swing, walk.control_period)
+    )
+    posture = {f"{side}ArmElbowMotion": scenario.gait.arms.elbow_flexion for side in SIDES}
+    controller = builder.AddNamedSystem(
+        "controller",
+        WholeBodyController(model, scenario.subject.skeleton, walk.whole_body, posture, walk.control_period),
+    )
+    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd))
+    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
+    body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
+    feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
+
+    builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
+    builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
+    builder.Connect(plant.get_state_output_port(), planner.get_state_input_port())
+    builder.Connect(feet.get_foot_forces_output_port(), planner.get_foot_forces_input_port())
+    builder.Connect(command.get_command_output_port(), planner.get_command_input_port())
+    builder.Connect(plant.get_state_output_port(), controller.get_state_input_port())
+    builder.Connect(planner.get_plan_output_port(), controller.get_plan_input_port())
+    builder.Connect(controller.get_torque_output_port(), bank.get_feedforward_input_port())
+    builder.Connect(controller.get_desired_state_output_port(), bank.get_desired_state_input_port())
+    builder.Connect(controller.get_sample_time_output_port(), bank.get_sample_time_input_port())
+    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
+    builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
+    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
+    builder.Connect(pushes.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+
+    for port, name in (
+        (plant.get_state_output_port(), "state"),
+        (human.scene_graph.get_query_output_port(), "query_object"),
+        (plant.get_contact_results_output_port(), "contact_results"),
+        (bank.get_torque_output_port(), "torque"),
+        (bank.get_saturated_output_port(), "saturated"),
+        (bank.get_held_desired_state_output_port(), "desired_state"),
+        (planner.get_phase_output_port(), "phase"),
+        (planner.get_contact_schedule_output_port(), "contact_schedule"),
+        (body.get_soles_output_port(), "soles"),
+        (body.get_com_output_port(), "com"),
+        (feet.get_foot_forces_output_port(), "foot_forces"),
+        (command.get_command_output_port(), "command"),
+        (planner.get_balance_output_port(), "balance"),
+        (controller.get_status_output_port(), "qp_status"),
+        (pushes.get_force_output_port(), "push"),
+    ):
+        builder.ExportOutput(port, name)
+    diagram = builder.Build()
+    diagram.set_name("walker")
+    return diagram

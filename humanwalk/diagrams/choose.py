@@ -1,0 +1,12 @@
+"""The diagram that a scenario asks for."""
+
+from pydrake.systems.framework import Diagram
+
+from humanwalk.diagrams.balanced_walker import make_balanced_walker
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.scenario import Scenario
+
+
+def make_diagram(scenario: Scenario) -> Diagram:
+    """The walker with the scenario's controller; see `make_walker` and `make_balanced_walker` for its ports."""
+    return make_balanced_walker(scenario) if scenario.controller == "balanced" else make_walker(scenario)

@@ -1,0 +1,28 @@
+"""LeafSystem: what the walker is asked for."""
+
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
+
+from humanwalk.control.command import CommandParameters, CommandProfile
+
+
+class CommandSource(LeafSystem):
+    """The scenario's command over time.
+
+    Outputs:
+        command: (3) forward and sideways speed along the walker's heading [m/s], turn rate [rad/s].
+    """
+
+    def __init__(self, parameters: CommandParameters) -> None:
+        super().__init__()
+        self._profile = CommandProfile(parameters)
+        self._output = self.DeclareVectorOutputPort(
+            "command", 3, self._calc, prerequisites_of_calc={self.time_ticket()}
+        )
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        command = self._profile.at(context.get_time())
+        output.SetFromVector([command.forward, command.sideways, command.turn])
+
+    def get_command_output_port(self) -> OutputPort:
+        """Output command."""
+        return self._output

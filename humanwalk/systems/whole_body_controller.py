@@ -1,0 +1,146 @@
+"""LeafSystem: the whole-body quadratic program in time."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.common.value import Value
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
+
+from humanwalk.body import SIDES, Skeleton, contact_spheres
+from humanwalk.control.body_dynamics import BodyDynamics
+from humanwalk.control.step_planner import FootTask, WalkingReference
+from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
+from humanwalk.systems.gait_planner import Plan
+
+Array = npt.NDArray[np.float64]
+
+STATUS = ("solved", "failures", "failures_in_a_row")
+
+
+class WholeBodyController(LeafSystem):
+    """Torques and desired rates of all joints, in a periodic discrete update.
+
+    Where the program has no solution the torques of the last one are held for `hold` seconds; after that the joints
+    are only damped, until there is a solution again.
+
+    Inputs:
+        state: plant state [q; v].
+        plan: Plan, see GaitPlanner.
+
+    Outputs (all show state, so reading them solves nothing):
+        torque: (n) feed-forward for the actuators, in actuator order [N m].
+        desired_state: (2n) angles [rad] and rates [rad/s] for the actuators' own gains, in actuator order.
+        sample_time: (1) the time at which they were computed [s].
+        status: (3) 1 where the last program was solved, else 0; failures so far; failures in a row.
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        skeleton: Skeleton,
+        parameters: WholeBodyParameters,
+        posture: Mapping[str, float],
+        period: float,
+    ) -> None:
+        """Make the controller.
+
+        Args:
+            plant: finalised model of the body, in a context of its own.
+            skeleton: the same body, for the contact points of its soles.
+            parameters: tasks and limits.
+            posture: joint angles [rad] by name around which arms and back are held; 0 where not named.
+            period: time between solutions [s].
+        """
+        super().__init__()
+        self._dynamics = BodyDynamics(plant)
+        self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters)
+        self._period = period
+        self._hold = parameters.hold
+        joints = self._dynamics.joints
+        self._n = n = len(joints.names)
+        self._place = joints.v - 6
+        self._order = np.argsort(self._place)
+        self._index = {name: i for i, name in enumerate(self._qp.names)}
+        self._rest = np.array([posture.get(name, 0.0) for name in self._qp.names])
+        self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
+
+        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        self._plan = self.DeclareAbstractInputPort("plan", Value(Plan()))
+        groups = [self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS))]
+        self._groups = groups
+        self._torque_output = self.DeclareStateOutputPort("torque", groups[0])
+        self._desired_output = self.DeclareStateOutputPort("desired_state", groups[1])
+        self._time_output = self.DeclareStateOutputPort("sample_time", groups[2])
+        self._status_output = self.DeclareStateOutputPort("status", groups[3])
+        self.DeclareInitializationDiscreteUpdateEvent(self._solve)
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
+
+    def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
+        reference = self._plan.Eval(context).reference
+        state = self._state.Eval(context)
+        body = self._dynamics.at(state, self._qp.frames(reference))
+        q = self._dynamics.joints.positions(state)[self._order]
+        v = body.v[6:]
+        posture = self._posture(reference)
+        solution = self._qp.solve(body, reference, posture)
+
+        torque = context.get_discrete_state(self._groups[0]).value()[self._order]
+        _, failures, in_a_row = context.get_discrete_state(self._groups[3]).value()
+        if solution is not None:
+            torque, in_a_row = solution.torque, 0
+            rate = v + self._period * solution.acceleration[6:]
+        else:
+            failures, in_a_row = failures + 1, in_a_row + 1
+            rate = np.zeros_like(v)
+            if in_a_row * self._period > self._hold:
+                torque = np.zeros_like(v)
+        rate = np.where(self._is_foot, posture.rate, rate)
+        angle = np.where(self._is_foot, posture.angle, q)
+        values = (
+            torque[self._place],
+            np.concatenate((angle[self._place], rate[self._place])),
+            np.array((context.get_time(),)),
+            np.array((float(solution is not None), failures, in_a_row)),
+        )
+        for group, value in zip(self._groups, values, strict=True):
+            discrete_state.set_value(group, value)
+        return EventStatus.Succeeded()
+
+    def _posture(self, reference: WalkingReference) -> Posture:
+        angle, rate = self._rest.copy(), np.zeros(self._n)
+        for side, (swing, swing_rate) in zip(SIDES, reference.shoulder_flexion, strict=True):
+            shoulder, elbow = self._index[f"{side}ArmShoulderMotion"], self._index[f"{side}ArmElbowMotion"]
+            angle[shoulder] += swing
+            rate[shoulder] = swing_rate
+            angle[elbow] += 0.5 * max(swing, 0.0)
+            foot = reference.foot(side)
+            if foot.task is FootTask.HEEL_OFF:
+                toes = self._index[f"{side}LegFootToesMotion"]
+                angle[toes], rate[toes], _ = foot.pitch
+        return Posture(angle, rate)
+
+    def get_state_input_port(self) -> InputPort:
+        """Input state."""
+        return self._state
+
+    def get_plan_input_port(self) -> InputPort:
+        """Input plan."""
+        return self._plan
+
+    def get_torque_output_port(self) -> OutputPort:
+        """Output torque."""
+        return self._torque_output
+
+    def get_desired_state_output_port(self) -> OutputPort:
+        """Output desired_state."""
+        return self._desired_output
+
+    def get_sample_time_output_port(self) -> OutputPort:
+        """Output sample_time."""
+        return self._time_output
+
+    def get_status_output_port(self) -> OutputPort:
+        """Output status."""
+        return self._status_output

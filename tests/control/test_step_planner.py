@@ -1,0 +1,173 @@
+"""The step planner stands, shifts weight, steps on alternate sides, balances by footholds and stops."""
+
+import cmath
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.control.step_planner import (
+    BodyState,
+    Command,
+    FootState,
+    FootTask,
+    Phase,
+    StepPlanner,
+    StepPlannerParameters,
+    other,
+)
+
+PERIOD = 0.004
+ANKLE = 0.068
+PARAMETERS = StepPlannerParameters()
+
+
+def planner(**changes):
+    return StepPlanner(replace(PARAMETERS, **changes), 0.98, ANKLE, "Right", PERIOD)
+
+
+def foot(position, force=350.0, **changes):
+    values = dict(
+        position=position, velocity=0j, height=ANKLE, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=force
+    )
+    return FootState(**(values | changes))
+
+
+def standing(com=0.03 + 0j, velocity=0j, time=0.0):
+    return BodyState(time, com, velocity, 0.96, foot(-0.0875j), foot(0.0875j))
+
+
+def pendulum_walk(plan, command, duration, push=None):
+    """A pendulum whose feet are where the planner wants them: the planner's own world. Yields what happens."""
+    body = standing()
+    state = plan.start(body)
+    for tick in range(round(duration / PERIOD)):
+        time = tick * PERIOD
+        wanted = command(time)
+        state, reference = plan.update(state, body, wanted)
+        yield time, state, reference, body
+        velocity = body.com_velocity + PERIOD * plan.frequency**2 * (body.com - reference.zmp)
+        if push is not None and abs(time - push[0]) < 0.5 * PERIOD:
+            velocity += push[1]
+        feet = {}
+        for side in ("Right", "Left"):
+            target, old = reference.foot(side), body.foot(side)
+            if target.task is FootTask.SWING:
+                feet[side] = foot(target.position.position, 0.0, velocity=target.position.velocity, yaw=target.yaw)
+            else:
+                feet[side] = foot(old.position, yaw=old.yaw)
+        body = BodyState(time + PERIOD, body.com + PERIOD * velocity, velocity, 0.93, feet["Right"], feet["Left"])
+
+
+def walk_at(forward, sideways=0.0, turn=0.0):
+    return lambda time: Command(forward, sideways, turn) if time > 0.2 else Command()
+
+
+def test_it_stands_where_nothing_is_commanded():
+    for _, state, reference, _ in pendulum_walk(planner(), lambda time: Command(), 1.0):
+        assert state.phase is Phase.STAND
+        assert {reference.right.task, reference.left.task} == {FootTask.FLAT}
+
+
+def test_phases_follow_each_other_and_sides_alternate():
+    previous, stances = Phase.STAND, []
+    follows = {
+        Phase.STAND: {Phase.WEIGHT_SHIFT},
+        Phase.WEIGHT_SHIFT: {Phase.SINGLE_SUPPORT},
+        Phase.DOUBLE_SUPPORT: {Phase.SINGLE_SUPPORT},
+        Phase.SINGLE_SUPPORT: {Phase.DOUBLE_SUPPORT},
+    }
+    for _, state, _, _ in pendulum_walk(planner(), walk_at(0.5), 6.0):
+        if state.phase is not previous:
+            assert state.phase in follows[previous]
+            previous = state.phase
+            if state.phase is Phase.SINGLE_SUPPORT:
+                stances.append(state.stance)
+    assert len(stances) >= 6
+    assert stances[0] == "Left"
+    assert all(later == other(earlier) for earlier, later in pairwise(stances))
+
+
+def test_the_foot_that_stands_is_never_the_one_that_swings():
+    for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.8), 4.0):
+        assert reference.foot(state.stance).task is not FootTask.SWING
+        assert reference.foot(state.stance).load == 1.0
+
+
+@pytest.mark.parametrize("speed", [complex(0.4), complex(1.0), complex(-0.3), complex(0.3, 0.1)])
+def test_a_perfect_pendulum_walks_as_commanded(speed):
+    middle = [b.com for t, _, _, b in pendulum_walk(planner(), walk_at(speed.real, speed.imag), 12.0) if t > 7.8]
+    step = PARAMETERS.timing.step
+    window = round(6 * step / PERIOD)
+    assert (middle[window] - middle[0]).real / (window * PERIOD) == pytest.approx(speed.real, abs=0.03)
+    assert (middle[window] - middle[0]).imag / (window * PERIOD) == pytest.approx(speed.imag, abs=0.03)
+
+
+def test_a_turn_turns_the_feet_and_the_walk():
+    *_, (_, state, _, body) = pendulum_walk(planner(), walk_at(0.5, turn=0.3), 8.0)
+    assert state.heading > 1.0
+    assert cmath.phase(body.com_velocity) == pytest.approx(state.heading, abs=0.6)
+
+
+@settings(max_examples=10)
+@given(st.floats(0.02, 0.15), st.floats(-math.pi, math.pi))
+def test_a_pendulum_that_is_pushed_is_caught_by_steps(size, direction):
+    push = (3.0, cmath.rect(size, direction))
+    *_, (_, state, reference, body) = pendulum_walk(planner(), walk_at(0.5), 7.0, push)
+    assert abs(body.com - state.middle) < 0.6
+    assert abs(reference.dcm - reference.dcm_reference) < 0.05
+
+
+def test_a_push_forward_makes_the_next_step_longer():
+    def foothold(push):
+        for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.5), 4.2, push):
+            if state.phase is Phase.SINGLE_SUPPORT:
+                last = reference.foothold - state.ankle(state.stance)
+        return last.real
+
+    assert foothold((4.1, 0.1 + 0j)) > foothold(None)
+
+
+def test_legs_are_never_asked_to_cross():
+    for push in (0.5j, -0.5j):
+        for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.3), 5.0, (3.0, push)):
+            if reference.phase is Phase.SINGLE_SUPPORT and reference.phase_time > 0.3:
+                outward = -1.0 if state.stance == "Left" else 1.0
+                width = outward * (reference.foothold - state.ankle(state.stance)).imag
+                assert width >= PARAMETERS.placement.narrowest - 0.02
+
+
+def test_it_stops_and_stands_with_its_feet_side_by_side():
+    command = lambda time: Command(0.4 if 0.2 < time < 4.0 else 0.0)  # noqa: E731
+    *_, (_, state, _, body) = pendulum_walk(planner(), command, 8.0)
+    assert state.phase is Phase.STAND
+    assert abs(body.com_velocity) < 0.02
+
+
+def test_the_zero_moment_point_stays_over_the_stance_foot():
+    placement = PARAMETERS.placement
+    for _, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.0, (3.0, 0.3 + 0.2j)):
+        if reference.phase is Phase.SINGLE_SUPPORT and state.phase is Phase.SINGLE_SUPPORT:
+            offset = reference.zmp - state.ankle(state.stance)
+            assert -placement.foot_back - 1e-9 <= offset.real <= placement.foot_front + 1e-9
+            assert abs(offset.imag) <= placement.foot_half_width + 1e-9
+
+
+def test_durations_do_not_depend_on_the_control_period():
+    def landings(period):
+        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, "Right", period)
+        body, state, times = standing(), None, []
+        state = plan.start(body)
+        for tick in range(round(4.0 / period)):
+            before = state.phase
+            state, _ = plan.update(state, replace(body, time=tick * period), walk_at(0.0001, 0.06)(tick * period))
+            if before is Phase.SINGLE_SUPPORT and state.phase is Phase.DOUBLE_SUPPORT:
+                times.append(tick * period)
+            body = replace(body, right=replace(body.right, force=0.0), left=replace(body.left, force=0.0))
+        return times
+
+    coarse, fine = landings(0.004), landings(0.002)
+    assert len(coarse) == len(fine) > 3

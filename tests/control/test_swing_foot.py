@@ -1,0 +1,78 @@
+"""The foot in the air goes on as it left, arrives where and when it should, and bounds its jerk."""
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.control.swing_foot import PlanarMotion, SwingParameters, SwingProfile
+
+DT = 0.004
+
+
+def swing_to(goal_at, duration, jerk_limit=1e9):
+    motion, t = PlanarMotion(0.0), 0.0
+    path = [motion]
+    while t < duration - 0.5 * DT:
+        motion = motion.towards(goal_at(t), duration - t, DT, jerk_limit)
+        t += DT
+        path.append(motion)
+    return path
+
+
+@given(st.floats(-0.8, 0.8), st.floats(-0.3, 0.3))
+def test_it_comes_to_rest_at_the_foothold(x, y):
+    goal = complex(x, y)
+    end = swing_to(lambda t: goal, 0.4)[-1]
+    assert end.position == pytest.approx(goal, abs=0.01)
+    assert abs(end.velocity) < 0.5
+
+
+def test_a_foothold_that_moves_is_reached_too():
+    end = swing_to(lambda t: 0.6 if t < 0.2 else 0.7 + 0.05j, 0.42)[-1]
+    assert end.position == pytest.approx(0.7 + 0.05j, abs=0.02)
+
+
+def test_velocity_is_the_derivative_of_position():
+    path = swing_to(lambda t: 0.7, 0.4)
+    for before, after in pairwise(path):
+        mean = 0.5 * (before.velocity + after.velocity)
+        assert (after.position - before.position) / DT == pytest.approx(mean, abs=0.01)
+
+
+def test_jerk_is_bounded():
+    path = swing_to(lambda t: 2.0, 0.4, jerk_limit=1000.0)
+    for before, after in pairwise(path):
+        assert abs(after.acceleration - before.acceleration) <= 1000.0 * DT + 1e-9
+
+
+@pytest.fixture
+def profile():
+    return SwingProfile.from_lift_off(0.12, 0.3, 0.6, -2.0, 0.068, 0.25, 0.42, SwingParameters())
+
+
+def test_it_goes_on_as_the_foot_left(profile):
+    begin = profile.at(0.0)
+    assert (begin.height, begin.pitch) == pytest.approx((0.12, 0.6))
+    assert (begin.height_rate, begin.pitch_rate) == pytest.approx((0.3, -2.0))
+
+
+def test_it_lands_on_the_heel_with_the_landing_speed(profile):
+    end, parameters = profile.at(1.0), SwingParameters()
+    assert end.pitch == pytest.approx(-0.25)
+    assert end.height_rate == pytest.approx(-parameters.landing_speed)
+
+
+def test_it_clears_the_ground_in_between(profile):
+    assert all(profile.at(s / 100).height > 0.068 for s in range(95))
+
+
+@given(st.floats(0.01, 0.99))
+def test_rates_are_derivatives(progress):
+    profile = SwingProfile.from_lift_off(0.12, 0.3, 0.6, -2.0, 0.068, 0.25, 0.42, SwingParameters())
+    h = 1e-6
+    before, here, after = (profile.at(progress + d) for d in (-h, 0.0, h))
+    dt = 2.0 * h * profile.duration
+    assert (after.height - before.height) / dt == pytest.approx(here.height_rate, abs=1e-3)
+    assert (after.pitch - before.pitch) / dt == pytest.approx(here.pitch_rate, abs=1e-3)

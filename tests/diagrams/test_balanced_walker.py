@@ -1,0 +1,60 @@
+"""The balanced walker stays up by itself, with no force on it but the ground's, and refuses what it cannot do."""
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from humanwalk.diagrams.choose import make_diagram
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario, parse_scenario
+
+PORTS = [
+    *("state", "query_object", "contact_results", "torque", "saturated", "desired_state", "phase"),
+    *("contact_schedule", "soles", "com", "foot_forces", "command", "balance", "qp_status", "push"),
+]
+
+
+def test_it_exports_what_a_run_records():
+    diagram = make_diagram(load_scenario("stand"))
+    assert [diagram.get_output_port(i).get_name() for i in range(diagram.num_output_ports())] == PORTS
+    assert diagram.num_input_ports() == 0
+
+
+def test_nothing_but_the_ground_acts_on_it():
+    diagram = make_diagram(load_scenario("walk"))
+    assert not diagram.HasSubsystemNamed("support")
+    plant = diagram.GetSubsystemByName("plant")
+    simulator = Simulator(diagram)
+    simulator.Initialize()
+    context = plant.GetMyContextFromRoot(simulator.get_context())
+    assert plant.get_applied_spatial_force_input_port().Eval(context) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+def test_it_walks_its_first_steps(contact):
+    diagram = make_diagram(
+        load_scenario("walk", {"balanced.command.points": "[{time: 0.2, forward: 0.6}]", "contact": contact})
+    )
+    simulator = Simulator(diagram)
+    context = simulator.get_context()
+    start = diagram.GetOutputPort("com").Eval(context).copy()
+    simulator.AdvanceTo(3.5)
+    com = diagram.GetOutputPort("com").Eval(context)
+    assert com[2] > 0.9 * start[2]
+    assert com[0] - start[0] > 0.5
+    assert abs(com[1]) < 0.1
+    assert np.abs(diagram.GetOutputPort("push").Eval(context)).max() == 0.0
+    assert diagram.GetOutputPort("qp_status").Eval(context)[1] == 0
+
+
+@pytest.mark.parametrize(
+    "override", [{"actuators.law": "explicit"}, {"simulation.integrator": "cenic", "simulation.time_step": "0"}]
+)
+def test_what_it_cannot_do_is_refused_with_a_mend(override):
+    with pytest.raises(ParameterError, match=r"set both"):
+        make_diagram(load_scenario("walk", override))
+
+
+def test_the_default_controller_is_the_thesis():
+    assert make_diagram(parse_scenario("")).HasSubsystemNamed("inverse_kinematics")

@@ -1,0 +1,90 @@
+"""The whole-body controller as a system: ports, order of the joints, and how it survives without a solution."""
+
+import numpy as np
+import pytest
+
+from humanwalk.control.step_planner import Command, StepPlanner, StepPlannerParameters
+from humanwalk.control.whole_body_qp import WholeBodyParameters
+from humanwalk.systems.gait_planner import Plan
+from humanwalk.systems.whole_body_controller import WholeBodyController
+
+PERIOD = 0.004
+
+
+@pytest.fixture
+def controller(plant, skeleton):
+    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {"LeftArmElbowMotion": 0.4}, PERIOD)
+
+
+@pytest.fixture
+def standing(plant, joints):
+    q = plant.GetPositions(plant.CreateDefaultContext())
+    for side in ("Right", "Left"):
+        for joint, angle in (("Femur", 0.12), ("Tibia", 0.24), ("Ankle", 0.12)):
+            q[joints.q[joints.names.index(f"{side}Leg{joint}Motion")]] = angle
+    q[6] -= 0.0065
+    return np.concatenate((q, np.zeros(plant.num_velocities())))
+
+
+@pytest.fixture
+def plan(controller, standing):
+    body = controller._dynamics.body_state(standing, 0.0, {"Right": 350.0, "Left": 350.0})
+    planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, "Right", PERIOD)
+    return Plan(*planner.update(planner.start(body), body, Command()))
+
+
+def updated(controller, context):
+    context.SetDiscreteState(controller.EvalUniquePeriodicDiscreteUpdate(context))
+
+
+def context_with(controller, state, plan):
+    context = controller.CreateDefaultContext()
+    controller.get_state_input_port().FixValue(context, state)
+    controller.get_plan_input_port().FixValue(context, plan)
+    return context
+
+
+def test_ports(controller):
+    outputs = [controller.get_output_port(i) for i in range(controller.num_output_ports())]
+    assert [(port.get_name(), port.size()) for port in outputs] == [
+        ("torque", 42),
+        ("desired_state", 84),
+        ("sample_time", 1),
+        ("status", 3),
+    ]
+
+
+def test_both_knees_hold_the_body_up(controller, joints, standing, plan):
+    context = context_with(controller, standing, plan)
+    updated(controller, context)
+    torque = controller.get_torque_output_port().Eval(context)
+    assert controller.get_status_output_port().Eval(context) == pytest.approx([1, 0, 0])
+    knee = [torque[joints.names.index(f"{side}LegTibiaMotion")] for side in ("Right", "Left")]
+    assert knee[0] == pytest.approx(knee[1], abs=6.0)
+    # A bent knee that carries half the body is extended: negative.
+    assert knee[0] < -10.0
+
+
+def test_arms_go_to_their_posture(controller, joints, standing, plan):
+    context = context_with(controller, standing, plan)
+    updated(controller, context)
+    rates = controller.get_desired_state_output_port().Eval(context)[42:]
+    assert rates[joints.names.index("LeftArmElbowMotion")] > 0.0
+    assert rates[joints.names.index("RightArmElbowMotion")] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_failures_are_counted_the_last_torque_is_held_and_then_let_go(controller, standing, plan):
+    context = context_with(controller, standing, plan)
+    updated(controller, context)
+    held = controller.get_torque_output_port().Eval(context).copy()
+    broken = standing.copy()
+    broken[-48:] = 1e4
+    controller.get_state_input_port().FixValue(context, broken)
+    for failures in range(1, 8):
+        updated(controller, context)
+        assert controller.get_status_output_port().Eval(context) == pytest.approx([0, failures, failures])
+        expected = held if failures * PERIOD <= WholeBodyParameters().hold else np.zeros(42)
+        assert controller.get_torque_output_port().Eval(context) == pytest.approx(expected)
+    controller.get_state_input_port().FixValue(context, standing)
+    updated(controller, context)
+    assert controller.get_status_output_port().Eval(context) == pytest.approx([1, 7, 0])
