@@ -81,7 +81,7 @@ def pushes(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 
 def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    for name in ("stand", "start_stop"):
+    for name in ("stand", "start_stop", "turn", "sideways", "backward"):
         yield measure(name, load_scenario(name))
 
 

@@ -432,10 +432,9 @@ class StepPlanner:
 
     def _touch_down(self, state: PlannerState, body: BodyState, command: Command, moving: bool) -> PlannerState:
         """The swinging foot becomes the stance foot; both are where they are measured, so that no error adds up."""
-        timing = self.parameters.timing
         right, left = body.right.position, body.left.position
         middle = 0.5 * (right + left)
-        heading = state.heading + command.turn * timing.step
+        heading = state.heading + command.turn * state.elapsed
         bias = state.speed_bias
         if len(state.landings) == 2:
             two_ago = state.landings[0]
@@ -443,7 +442,7 @@ class StepPlanner:
             measured = walked.real / (body.time - two_ago.time)
             bias += self.parameters.speed_gain * (two_ago.speed - measured)
             bias = _clip(bias, -self.parameters.speed_bias_limit, self.parameters.speed_bias_limit)
-        path = state.path + command.speed * timing.step * cmath.exp(1j * heading)
+        path = state.path + command.speed * state.elapsed * cmath.exp(1j * heading)
         path += ((middle - path) * cmath.exp(-1j * heading)).real * cmath.exp(1j * heading)
         return PlannerState(
             phase=Phase.DOUBLE_SUPPORT if moving else Phase.STAND,
