@@ -1,4 +1,4 @@
-"""The command line: humanwalk walk, replay, plot, scenarios, model, diagram."""
+"""The command line: humanwalk walk, replay, video, snapshot, plot, scenarios, model, diagram."""
 
 import logging
 import sys
@@ -30,6 +30,8 @@ SetOption = Annotated[
     list[str],
     typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; may be given several times."),
 ]
+
+ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), front, or orbit (around the walker).")]
 
 
 @app.command(
@@ -70,6 +72,59 @@ def replay(
     from humanwalk.run.replay import serve_replay
 
     serve_replay(run, open_browser=browser, console=console)
+
+
+@app.command(
+    epilog="Examples: humanwalk video runs/thesis -o walk.mp4  |  "
+    "humanwalk video runs/thesis -o slow.webp --speed 0.25 --to 2"
+)
+def video(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Video to write; mp4, gif or webp by its suffix.")],
+    fps: Annotated[float, typer.Option(help="Frames per second of the video.")] = 30.0,
+    size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Of the picture, in pixels.")] = "1280x720",
+    view: ViewOption = "follow",
+    speed: Annotated[float, typer.Option(help="Seconds of walking per second of video.")] = 1.0,
+    from_: Annotated[float, typer.Option("--from", help="Begin at this time of the run [s].")] = 0.0,
+    to: Annotated[float | None, typer.Option(help="End at this time of the run [s]. Default: its end.")] = None,
+) -> None:
+    """Record the replay of a run as a video, frame by frame, in a browser without a window."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from humanwalk.run.video import VideoParameters, parse_size, record_video
+
+    width, height = parse_size(size)
+    parameters = VideoParameters(fps, speed, width, height, view, from_, to)  # type: ignore[arg-type]
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("frames"))
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as progress:
+        task = progress.add_task("starting the browser", total=None)
+
+        def show(done: int, frames: int) -> None:
+            what = "drawing" if done < frames else "encoding"
+            progress.update(task, description=what, completed=done, total=frames)
+
+        try:
+            frames = record_video(run, output, parameters, show)
+        except KeyboardInterrupt:
+            progress.stop()
+            console.print("interrupted; nothing was written")
+            raise typer.Exit(INTERRUPTED) from None
+    console.print(f"{output}: {frames} frames, {frames / fps:.2f} s", soft_wrap=True)
+
+
+@app.command(epilog="Example: humanwalk snapshot runs/thesis --times 3.0,3.1,3.2,3.3 -o strip.png --view side")
+def snapshot(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    times: Annotated[str, typer.Option(help="Instants [s], with commas between.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="PNG picture to write.")],
+    size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Of one still, in pixels.")] = "320x480",
+    view: ViewOption = "side",
+) -> None:
+    """Draw instants of a run side by side."""
+    from humanwalk.run.video import parse_size, parse_times, write_snapshot
+
+    write_snapshot(run, output, parse_times(times), *parse_size(size), view)  # type: ignore[arg-type]
+    console.print(f"{output}", soft_wrap=True)
 
 
 @app.command(epilog="Example: humanwalk plot runs/thesis --only figure_5_08 --only support --format pdf")
