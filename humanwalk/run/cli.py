@@ -31,6 +31,9 @@ SetOption = Annotated[
     typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; may be given several times."),
 ]
 
+LookOption = Annotated[
+    str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
+]
 ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), front, or orbit (around the walker).")]
 
 
@@ -45,6 +48,9 @@ def walk(
     ] = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
     set_: SetOption = [],  # noqa: B006
+    look: Annotated[
+        str | None, typer.Option(help="person or bones, instead of the scenario's: the same walk, another look.")
+    ] = None,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
@@ -55,6 +61,9 @@ def walk(
     overrides = _overrides(set_)
     if duration is not None:
         overrides["duration"] = repr(duration)
+    if look is not None:
+        _require_look(look)
+        overrides["subject.look"] = look
     run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)
     end = run.summary["end"]
     if end == "interrupted":
@@ -166,6 +175,7 @@ def model(
     output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write.")],
     mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
     stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
+    look: LookOption = "person",
 ) -> None:
     """Write the human as an SDF model that Drake parses."""
     from humanwalk.body.plant import Subject
@@ -173,9 +183,10 @@ def model(
     from humanwalk.quantity import check
     from humanwalk.run.files import write_text
 
+    _require_look(look)
     subject = Subject(mass=mass, stature=stature)
     check(subject, "--subject")
-    write_text(output, to_sdf(subject.skeleton))
+    write_text(output, to_sdf(subject.skeleton, look))  # type: ignore[arg-type]
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
 
 
@@ -204,6 +215,13 @@ def main() -> None:
     except ParameterError as error:
         console.print(f"humanwalk: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
         sys.exit(BAD_INPUT)
+
+
+def _require_look(look: str) -> None:
+    from humanwalk.body.sdf import LOOKS
+
+    if look not in LOOKS:
+        raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
 
 
 def _overrides(pairs: list[str]) -> dict[str, str]:
