@@ -196,13 +196,16 @@ def diagram(
     scenario: ScenarioArgument = "thesis",
     set_: SetOption = [],  # noqa: B006
     depth: Annotated[int, typer.Option(min=0, max=5, help="How many levels of diagrams to open.")] = 1,
+    every_port: Annotated[
+        bool, typer.Option("--every-port", help="Draw the ports that lead nowhere, too: a plant has dozens.")
+    ] = False,
 ) -> None:
     """Draw the block diagram of a scenario's systems."""
     from humanwalk.diagrams.walker import make_walker
     from humanwalk.run.diagram_picture import draw_diagram
     from humanwalk.scenario import load_scenario
 
-    draw_diagram(make_walker(load_scenario(scenario, _overrides(set_))), output, depth)
+    draw_diagram(make_walker(load_scenario(scenario, _overrides(set_))), output, depth, every_port)
     console.print(f"{output}")
 
 
