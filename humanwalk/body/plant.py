@@ -9,7 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 
 from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
-from humanwalk.body.sdf import to_sdf
+from humanwalk.body.sdf import Look, to_sdf
 from humanwalk.body.skeleton import MASS_RANGE_KG, STATURE_RANGE_M, Skeleton
 from humanwalk.quantity import quantity
 
@@ -28,10 +28,15 @@ class Subject:
     stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
     """Standing height; the thesis' subject has 1.75 m (3.3.1)."""
 
+    look: Look = "person"
+    """What one sees of it: a clothed person, or rods between joints with their axes and the contact points."""
+
     @property
     def skeleton(self) -> Skeleton:
         """The scaled skeleton."""
-        return human() if self == Subject() else human().scaled(self.mass, self.stature)
+        if (self.mass, self.stature) == (REFERENCE_MASS, REFERENCE_STATURE):
+            return human()
+        return human().scaled(self.mass, self.stature)
 
 
 def register_package(package_map: PackageMap) -> None:
@@ -47,7 +52,7 @@ def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
     if subject == Subject():
         (instance,) = parser.AddModelsFromUrl(HUMAN_URL)
     else:
-        (instance,) = parser.AddModelsFromString(to_sdf(subject.skeleton), "sdf")
+        (instance,) = parser.AddModelsFromString(to_sdf(subject.skeleton, subject.look), "sdf")
     return instance
 
 

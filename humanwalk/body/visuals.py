@@ -91,15 +91,17 @@ def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
     return tuple(v.scaled(scale) for v in (*middle, *paired, *(v.mirrored() for v in paired)))
 
 
-def _ellipsoid(body: str, part: str, center: Vector3, radii: Vector3, color: Color, rpy: Vector3 = (0, 0, 0)) -> Visual:
+def ellipsoid(body: str, part: str, center: Vector3, radii: Vector3, color: Color, rpy: Vector3 = (0, 0, 0)) -> Visual:
+    """An ellipsoid by its centre and radii."""
     return Visual(body, part, "ellipsoid", radii, center, rpy, color)
 
 
-def _ball(body: str, part: str, center: Vector3, radius: float, color: Color) -> Visual:
-    return _ellipsoid(body, part, center, (radius, radius, radius), color)
+def ball(body: str, part: str, center: Vector3, radius: float, color: Color) -> Visual:
+    """A sphere."""
+    return ellipsoid(body, part, center, (radius, radius, radius), color)
 
 
-def _capsule(body: str, part: str, start: Vector3, end: Vector3, radius: float, color: Color) -> Visual:
+def capsule(body: str, part: str, start: Vector3, end: Vector3, radius: float, color: Color) -> Visual:
     """A rounded rod between the centres of its two caps."""
     dx, dy, dz = (a - b for a, b in zip(start, end, strict=True))
     length = math.hypot(dx, dy, dz)
@@ -111,57 +113,57 @@ def _capsule(body: str, part: str, start: Vector3, end: Vector3, radius: float, 
 
 def _trunk() -> Iterator[Visual]:
     """Pelvis in trousers, belt, abdomen and chest in a shirt."""
-    yield _ellipsoid("Pelvis", "hips", (-0.005, 0, 0.02), (0.112, 0.166, 0.125), TROUSERS)
-    yield _ellipsoid("Pelvis", "crotch", (0.0, 0, -0.035), (0.09, 0.085, 0.07), TROUSERS)
-    yield _ellipsoid("Pelvis", "belt", (-0.002, 0, 0.088), (0.108, 0.153, 0.024), BELT)
-    yield _ellipsoid("Pelvis", "buckle", (0.104, 0, 0.088), (0.008, 0.02, 0.014), SHIRT)
+    yield ellipsoid("Pelvis", "hips", (-0.005, 0, 0.02), (0.112, 0.166, 0.125), TROUSERS)
+    yield ellipsoid("Pelvis", "crotch", (0.0, 0, -0.035), (0.09, 0.085, 0.07), TROUSERS)
+    yield ellipsoid("Pelvis", "belt", (-0.002, 0, 0.088), (0.108, 0.153, 0.024), BELT)
+    yield ellipsoid("Pelvis", "buckle", (0.104, 0, 0.088), (0.008, 0.02, 0.014), SHIRT)
     # Tall and much overlapping, so that the waist is smooth both upright and bent.
     for level in (6, 5, 4, 3, 2, 1):
         height = 0.14 if level == 6 else 0.17
         radii = (0.106, 0.150 - 0.001 * level, height)
-        yield _ellipsoid(f"Lumbar_{level}", "waist", (0.0, 0, 0.022), radii, SHIRT)
-    yield _ellipsoid("Thoracic_10_12", "waist", (0.0, 0, 0.02), (0.110, 0.155, 0.17), SHIRT)
-    yield _ellipsoid("Ribs", "chest", (0.0, 0, 0.035), (0.116, 0.168, 0.185), SHIRT)
-    yield _ellipsoid("Thoracic_4_6", "chest", (0.0, 0, 0.02), (0.108, 0.168, 0.13), SHIRT)
-    yield _ellipsoid("Thoracic_1_3", "chest", (-0.005, 0, -0.015), (0.098, 0.16, 0.085), SHIRT)
-    yield _ellipsoid("Scapula", "yoke", (-0.008, 0, -0.010), (0.078, 0.238, 0.058), SHIRT)
-    yield _ellipsoid("Thoracic_1_3", "collar", (0.0, 0, 0.062), (0.066, 0.070, 0.022), SHIRT)
+        yield ellipsoid(f"Lumbar_{level}", "waist", (0.0, 0, 0.022), radii, SHIRT)
+    yield ellipsoid("Thoracic_10_12", "waist", (0.0, 0, 0.02), (0.110, 0.155, 0.17), SHIRT)
+    yield ellipsoid("Ribs", "chest", (0.0, 0, 0.035), (0.116, 0.168, 0.185), SHIRT)
+    yield ellipsoid("Thoracic_4_6", "chest", (0.0, 0, 0.02), (0.108, 0.168, 0.13), SHIRT)
+    yield ellipsoid("Thoracic_1_3", "chest", (-0.005, 0, -0.015), (0.098, 0.16, 0.085), SHIRT)
+    yield ellipsoid("Scapula", "yoke", (-0.008, 0, -0.010), (0.078, 0.238, 0.058), SHIRT)
+    yield ellipsoid("Thoracic_1_3", "collar", (0.0, 0, 0.062), (0.066, 0.070, 0.022), SHIRT)
 
 
 def _right_trunk_half() -> Iterator[Visual]:
     buttock = (0.085, 0.085, 0.095)
-    yield _ellipsoid("Pelvis", "right_buttock", (-0.042, -0.072, -0.018), buttock, TROUSERS)
+    yield ellipsoid("Pelvis", "right_buttock", (-0.042, -0.072, -0.018), buttock, TROUSERS)
     slope = (0.062, 0.150, 0.048)
-    yield _ellipsoid("Thoracic_1_3", "right_slope", (-0.012, -0.095, 0.012), slope, SHIRT, (0.33, 0, 0))
+    yield ellipsoid("Thoracic_1_3", "right_slope", (-0.012, -0.095, 0.012), slope, SHIRT, (0.33, 0, 0))
     cap = (0.060, 0.095, 0.056)
-    yield _ellipsoid("Scapula", "right_cap", (-0.004, -0.178, -0.014), cap, SHIRT, (0.25, 0, 0))
+    yield ellipsoid("Scapula", "right_cap", (-0.004, -0.178, -0.014), cap, SHIRT, (0.25, 0, 0))
 
 
 def _head() -> Iterator[Visual]:
     """Neck, skull, face and hair; the vertex is the hair's highest point."""
-    yield _capsule("Cervical_5_7", "neck", (-0.006, 0, -0.03), (0, 0, 0.055), 0.052, SKIN)
-    yield _capsule("Cervical_3_4_Axis", "neck", (0, 0, 0), (0.004, 0, 0.06), 0.051, SKIN)
-    yield _ellipsoid("Head", "skull", (0.008, 0, 0.048), (0.090, 0.075, 0.092), SKIN)
-    yield _ellipsoid("Head", "face", (0.030, 0, 0.020), (0.070, 0.067, 0.105), SKIN)
-    yield _ellipsoid("Head", "chin", (0.054, 0, -0.060), (0.028, 0.034, 0.026), SKIN)
-    yield _ellipsoid("Head", "nose", (0.103, 0, 0.005), (0.015, 0.011, 0.013), SKIN)
+    yield capsule("Cervical_5_7", "neck", (-0.006, 0, -0.03), (0, 0, 0.055), 0.052, SKIN)
+    yield capsule("Cervical_3_4_Axis", "neck", (0, 0, 0), (0.004, 0, 0.06), 0.051, SKIN)
+    yield ellipsoid("Head", "skull", (0.008, 0, 0.048), (0.090, 0.075, 0.092), SKIN)
+    yield ellipsoid("Head", "face", (0.030, 0, 0.020), (0.070, 0.067, 0.105), SKIN)
+    yield ellipsoid("Head", "chin", (0.054, 0, -0.060), (0.028, 0.034, 0.026), SKIN)
+    yield ellipsoid("Head", "nose", (0.103, 0, 0.005), (0.015, 0.011, 0.013), SKIN)
     bridge = (0.009, 0.0075, 0.028)
-    yield _ellipsoid("Head", "nose_bridge", (0.098, 0, 0.022), bridge, SKIN, (0, -0.25, 0))
-    yield _ellipsoid("Head", "mouth", (0.0890, 0, -0.032), (0.006, 0.021, 0.0055), LIPS)
-    yield _ellipsoid("Head", "hair", (-0.012, 0, 0.060), (0.094, 0.081, 0.083), HAIR)
-    yield _ellipsoid("Head", "hair_top", (0.012, 0, 0.085), (0.085, 0.075, 0.060), HAIR)
-    yield _ellipsoid("Head", "hair_back", (-0.032, 0, 0.022), (0.066, 0.073, 0.075), HAIR)
+    yield ellipsoid("Head", "nose_bridge", (0.098, 0, 0.022), bridge, SKIN, (0, -0.25, 0))
+    yield ellipsoid("Head", "mouth", (0.0890, 0, -0.032), (0.006, 0.021, 0.0055), LIPS)
+    yield ellipsoid("Head", "hair", (-0.012, 0, 0.060), (0.094, 0.081, 0.083), HAIR)
+    yield ellipsoid("Head", "hair_top", (0.012, 0, 0.085), (0.085, 0.075, 0.060), HAIR)
+    yield ellipsoid("Head", "hair_back", (-0.032, 0, 0.022), (0.066, 0.073, 0.075), HAIR)
 
 
 def _right_face_half() -> Iterator[Visual]:
-    yield _ball("Head", "right_eye", (0.0815, -0.030, 0.026), 0.0130, EYE_WHITE)
-    yield _ball("Head", "right_iris", (0.0888, -0.0303, 0.026), 0.0065, IRIS)
+    yield ball("Head", "right_eye", (0.0815, -0.030, 0.026), 0.0130, EYE_WHITE)
+    yield ball("Head", "right_iris", (0.0888, -0.0303, 0.026), 0.0065, IRIS)
     lid = (0.0133, 0.0145, 0.0085)
-    yield _ellipsoid("Head", "right_lid", (0.0818, -0.030, 0.0345), lid, SKIN)
+    yield ellipsoid("Head", "right_lid", (0.0818, -0.030, 0.0345), lid, SKIN)
     brow = (0.006, 0.018, 0.0035)
-    yield _ellipsoid("Head", "right_brow", (0.0895, -0.031, 0.046), brow, HAIR, (0.1, 0, -0.35))
+    yield ellipsoid("Head", "right_brow", (0.0895, -0.031, 0.046), brow, HAIR, (0.1, 0, -0.35))
     ear = (0.018, 0.009, 0.030)
-    yield _ellipsoid("Head", "right_ear", (0.006, -0.076, 0.008), ear, SKIN, (0, -0.15, 0.3))
+    yield ellipsoid("Head", "right_ear", (0.006, -0.076, 0.008), ear, SKIN, (0, -0.15, 0.3))
 
 
 def _right_leg() -> Iterator[Visual]:
@@ -172,27 +174,27 @@ def _right_leg() -> Iterator[Visual]:
     side = SIDE_COLORS["Right"]
 
     thigh = "RightLeg_Femur_Thigh"
-    yield _ellipsoid(thigh, "hip", (0.0, 0.004, -0.005), (0.090, 0.084, 0.095), TROUSERS)
+    yield ellipsoid(thigh, "hip", (0.0, 0.004, -0.005), (0.090, 0.084, 0.095), TROUSERS)
     yield from _striped(thigh, "thigh", (0.004, 0.006, -0.14), (0.086, 0.079, 0.22))
     yield from _striped(thigh, "lower_thigh", (0.003, 0.004, -0.28), (0.067, 0.063, 0.195))
-    yield _ball(thigh, "knee", knee, 0.056, TROUSERS)
+    yield ball(thigh, "knee", knee, 0.056, TROUSERS)
 
     shank = "RightLeg_Tibia"
-    yield _ellipsoid(shank, "knee", (0.003, 0, -0.01), (0.056, 0.055, 0.075), TROUSERS)
+    yield ellipsoid(shank, "knee", (0.003, 0, -0.01), (0.056, 0.055, 0.075), TROUSERS)
     yield from _striped(shank, "calf", (-0.010, 0, -0.13), (0.060, 0.055, 0.20))
     yield from _striped(shank, "lower_shank", (-0.005, 0, -0.21), (0.052, 0.050, 0.18))
     hem = (0.043, 0.165)
     yield Visual(shank, "hem", "cylinder", hem, (-0.002, 0, -0.3225), (0, 0, 0), TROUSERS)
     strip = (-0.002, -0.0385)
-    yield _capsule(shank, "hem_stripe", (*strip, -0.26), (*strip, -0.398), 0.0065, side)
-    yield _capsule(shank, "ankle", (-0.002, 0, -0.36), ankle, 0.035, SKIN)
+    yield capsule(shank, "hem_stripe", (*strip, -0.26), (*strip, -0.398), 0.0065, side)
+    yield capsule(shank, "ankle", (-0.002, 0, -0.36), ankle, 0.035, SKIN)
 
     heel, middle, toes = "RightLeg_Ankle", "RightLeg_FootMiddle", "RightLeg_FootToes"
-    yield _ellipsoid(heel, "shoe", (-0.006, 0, -0.021), (0.047, 0.036, 0.045), side)
-    yield _ellipsoid(heel, "tongue", (0.026, 0, -0.014), (0.052, 0.035, 0.038), side, (0, 0.5, 0))
-    yield _ellipsoid(middle, "shoe", (0.012, 0, 0.002), (0.085, 0.041, 0.033), side, (0, 0.17, 0))
-    yield _ellipsoid(middle, "ball", (0.07, 0, -0.012), (0.048, 0.045, 0.0225), side)
-    yield _ellipsoid(toes, "shoe", (0.012, 0, 0.0015), (0.0475, 0.0435, 0.0185), side)
+    yield ellipsoid(heel, "shoe", (-0.006, 0, -0.021), (0.047, 0.036, 0.045), side)
+    yield ellipsoid(heel, "tongue", (0.026, 0, -0.014), (0.052, 0.035, 0.038), side, (0, 0.5, 0))
+    yield ellipsoid(middle, "shoe", (0.012, 0, 0.002), (0.085, 0.041, 0.033), side, (0, 0.17, 0))
+    yield ellipsoid(middle, "ball", (0.07, 0, -0.012), (0.048, 0.045, 0.0225), side)
+    yield ellipsoid(toes, "shoe", (0.012, 0, 0.0015), (0.0475, 0.0435, 0.0185), side)
     ground = {body: -reference.origins[body][2] for body in (heel, middle, toes)}
     yield from _sole(heel, ground[heel], ((-0.021, 0.034),), ((-0.021, 0.064, 0.066),))
     yield from _sole(middle, ground[middle], ((0.072, 0.045),), ((-0.01, 0.02, 0.068), (0.02, 0.07, 0.084)))
@@ -206,10 +208,10 @@ def _striped(body: str, part: str, center: Vector3, radii: Vector3) -> Iterator[
 
     The stripe is the same ellipsoid, made narrow and moved outward, so that it hugs the leg.
     """
-    yield _ellipsoid(body, part, center, radii, TROUSERS)
+    yield ellipsoid(body, part, center, radii, TROUSERS)
     outward = (center[0], center[1] - 0.0025, center[2])
     narrow = (0.030, radii[1], radii[2] - 0.002)
-    yield _ellipsoid(body, f"{part}_stripe", outward, narrow, SIDE_COLORS["Right"])
+    yield ellipsoid(body, f"{part}_stripe", outward, narrow, SIDE_COLORS["Right"])
 
 
 def _sole(
@@ -236,22 +238,22 @@ def _right_arm() -> Iterator[Visual]:
     side = SIDE_COLORS["Right"]
 
     upper = "RightArm_Humor_Upper_Arm"
-    yield _ellipsoid(upper, "shoulder", (0, 0.018, -0.014), (0.059, 0.056, 0.062), SHIRT)
-    yield _ellipsoid(upper, "sleeve", (0, 0.008, -0.07), (0.055, 0.052, 0.125), SHIRT)
+    yield ellipsoid(upper, "shoulder", (0, 0.018, -0.014), (0.059, 0.056, 0.062), SHIRT)
+    yield ellipsoid(upper, "sleeve", (0, 0.008, -0.07), (0.055, 0.052, 0.125), SHIRT)
     cuff = (0.0505, 0.02)
     yield Visual(upper, "cuff", "cylinder", cuff, (0, 0.006, -0.125), (0, 0, 0), side)
-    yield _ellipsoid(upper, "biceps", (0.004, 0.003, -0.15), (0.046, 0.043, 0.14), SKIN)
-    yield _capsule(upper, "arm", (0, 0, -0.18), elbow, 0.036, SKIN)
-    yield _ball(upper, "elbow", elbow, 0.0385, SKIN)
+    yield ellipsoid(upper, "biceps", (0.004, 0.003, -0.15), (0.046, 0.043, 0.14), SKIN)
+    yield capsule(upper, "arm", (0, 0, -0.18), elbow, 0.036, SKIN)
+    yield ball(upper, "elbow", elbow, 0.0385, SKIN)
 
     fore = "RightArm_UlnaRadius_Forearm"
-    yield _ellipsoid(fore, "forearm", (0.001, 0, -0.075), (0.043, 0.041, 0.13), SKIN)
-    yield _ellipsoid(fore, "lower_forearm", (0, 0, -0.16), (0.033, 0.030, 0.14), SKIN)
-    yield _ellipsoid(fore, "wrist", wrist, (0.028, 0.023, 0.03), SKIN)
+    yield ellipsoid(fore, "forearm", (0.001, 0, -0.075), (0.043, 0.041, 0.13), SKIN)
+    yield ellipsoid(fore, "lower_forearm", (0, 0, -0.16), (0.033, 0.030, 0.14), SKIN)
+    yield ellipsoid(fore, "wrist", wrist, (0.028, 0.023, 0.03), SKIN)
 
     hand = "RightArm_Hand"
-    yield _ellipsoid(hand, "wrist", (0, 0, -0.005), (0.027, 0.022, 0.03), SKIN)
-    yield _ellipsoid(hand, "palm", (0, 0.001, -0.052), (0.042, 0.018, 0.052), SKIN)
+    yield ellipsoid(hand, "wrist", (0, 0, -0.005), (0.027, 0.022, 0.03), SKIN)
+    yield ellipsoid(hand, "palm", (0, 0.001, -0.052), (0.042, 0.018, 0.052), SKIN)
     for finger, x, length in (
         ("little", -0.029, 0.046),
         ("ring", -0.010, 0.062),
@@ -261,7 +263,7 @@ def _right_arm() -> Iterator[Visual]:
         knuckle = (0.95 * x, 0.002, -0.088)
         bend = (x, 0.008, -0.088 - 0.55 * length)
         tip = (0.95 * x, 0.022, -0.088 - length)
-        yield _capsule(hand, f"{finger}_root", knuckle, bend, 0.0092, SKIN)
-        yield _capsule(hand, f"{finger}_tip", bend, tip, 0.0085, SKIN)
-    yield _capsule(hand, "thumb_root", (0.022, 0.004, -0.022), (0.046, 0.014, -0.058), 0.012, SKIN)
-    yield _capsule(hand, "thumb_tip", (0.046, 0.014, -0.058), (0.050, 0.020, -0.086), 0.0098, SKIN)
+        yield capsule(hand, f"{finger}_root", knuckle, bend, 0.0092, SKIN)
+        yield capsule(hand, f"{finger}_tip", bend, tip, 0.0085, SKIN)
+    yield capsule(hand, "thumb_root", (0.022, 0.004, -0.022), (0.046, 0.014, -0.058), 0.012, SKIN)
+    yield capsule(hand, "thumb_tip", (0.046, 0.014, -0.058), (0.050, 0.020, -0.086), 0.0098, SKIN)

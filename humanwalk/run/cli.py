@@ -1,4 +1,4 @@
-"""The command line: humanwalk walk, replay, plot, scenarios, model, diagram."""
+"""The command line: humanwalk walk, replay, video, snapshot, plot, scenarios, model, diagram."""
 
 import logging
 import sys
@@ -32,6 +32,11 @@ SetOption = Annotated[
     typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; may be given several times."),
 ]
 
+LookOption = Annotated[
+    str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
+]
+ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), front, or orbit (around the walker).")]
+
 
 @app.command(
     epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
@@ -44,6 +49,9 @@ def walk(
     ] = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
     set_: SetOption = [],  # noqa: B006
+    look: Annotated[
+        str | None, typer.Option(help="person or bones, instead of the scenario's: the same walk, another look.")
+    ] = None,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
@@ -54,6 +62,9 @@ def walk(
     overrides = _overrides(set_)
     if duration is not None:
         overrides["duration"] = repr(duration)
+    if look is not None:
+        _require_look(look)
+        overrides["subject.look"] = look
     run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)
     end = run.summary["end"]
     if end == "interrupted":
@@ -71,6 +82,59 @@ def replay(
     from humanwalk.run.replay import serve_replay
 
     serve_replay(run, open_browser=browser, console=console)
+
+
+@app.command(
+    epilog="Examples: humanwalk video runs/thesis -o walk.mp4  |  "
+    "humanwalk video runs/thesis -o slow.webp --speed 0.25 --to 2"
+)
+def video(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Video to write; mp4, gif or webp by its suffix.")],
+    fps: Annotated[float, typer.Option(help="Frames per second of the video.")] = 30.0,
+    size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Of the picture, in pixels.")] = "1280x720",
+    view: ViewOption = "follow",
+    speed: Annotated[float, typer.Option(help="Seconds of walking per second of video.")] = 1.0,
+    from_: Annotated[float, typer.Option("--from", help="Begin at this time of the run [s].")] = 0.0,
+    to: Annotated[float | None, typer.Option(help="End at this time of the run [s]. Default: its end.")] = None,
+) -> None:
+    """Record the replay of a run as a video, frame by frame, in a browser without a window."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from humanwalk.run.video import VideoParameters, parse_size, record_video
+
+    width, height = parse_size(size)
+    parameters = VideoParameters(fps, speed, width, height, view, from_, to)  # type: ignore[arg-type]
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("frames"))
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as progress:
+        task = progress.add_task("starting the browser", total=None)
+
+        def show(done: int, frames: int) -> None:
+            what = "drawing" if done < frames else "encoding"
+            progress.update(task, description=what, completed=done, total=frames)
+
+        try:
+            frames = record_video(run, output, parameters, show)
+        except KeyboardInterrupt:
+            progress.stop()
+            console.print("interrupted; nothing was written")
+            raise typer.Exit(INTERRUPTED) from None
+    console.print(f"{output}: {frames} frames, {frames / fps:.2f} s", soft_wrap=True)
+
+
+@app.command(epilog="Example: humanwalk snapshot runs/thesis --times 3.0,3.1,3.2,3.3 -o strip.png --view side")
+def snapshot(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    times: Annotated[str, typer.Option(help="Instants [s], with commas between.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="PNG picture to write.")],
+    size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Of one still, in pixels.")] = "320x480",
+    view: ViewOption = "side",
+) -> None:
+    """Draw instants of a run side by side."""
+    from humanwalk.run.video import parse_size, parse_times, write_snapshot
+
+    write_snapshot(run, output, parse_times(times), *parse_size(size), view)  # type: ignore[arg-type]
+    console.print(f"{output}", soft_wrap=True)
 
 
 @app.command(epilog="Example: humanwalk plot runs/thesis --only figure_5_08 --only support --format pdf")
@@ -112,6 +176,7 @@ def model(
     output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write.")],
     mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
     stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
+    look: LookOption = "person",
 ) -> None:
     """Write the human as an SDF model that Drake parses."""
     from humanwalk.body.plant import Subject
@@ -119,9 +184,10 @@ def model(
     from humanwalk.quantity import check
     from humanwalk.run.files import write_text
 
+    _require_look(look)
     subject = Subject(mass=mass, stature=stature)
     check(subject, "subject")
-    write_text(output, to_sdf(subject.skeleton))
+    write_text(output, to_sdf(subject.skeleton, look))  # type: ignore[arg-type]
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
 
 
@@ -131,13 +197,16 @@ def diagram(
     scenario: ScenarioArgument = "thesis",
     set_: SetOption = [],  # noqa: B006
     depth: Annotated[int, typer.Option(min=0, max=5, help="How many levels of diagrams to open.")] = 1,
+    every_port: Annotated[
+        bool, typer.Option("--every-port", help="Draw the ports that lead nowhere, too: a plant has dozens.")
+    ] = False,
 ) -> None:
     """Draw the block diagram of a scenario's systems."""
     from humanwalk.diagrams.choose import make_diagram
     from humanwalk.run.diagram_picture import draw_diagram
     from humanwalk.scenario import load_scenario
 
-    draw_diagram(make_diagram(load_scenario(scenario, _overrides(set_))), output, depth)
+    draw_diagram(make_diagram(load_scenario(scenario, _overrides(set_))), output, depth, every_port)
     console.print(f"{output}")
 
 
@@ -150,6 +219,13 @@ def main() -> None:
     except ParameterError as error:
         console.print(f"humanwalk: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
         sys.exit(BAD_INPUT)
+
+
+def _require_look(look: str) -> None:
+    from humanwalk.body.sdf import LOOKS
+
+    if look not in LOOKS:
+        raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
 
 
 def _overrides(pairs: list[str]) -> dict[str, str]:

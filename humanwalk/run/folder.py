@@ -61,8 +61,18 @@ class Run:
 
     @property
     def replay(self) -> Path:
-        """The replay page."""
-        return self.path / REPLAY
+        """The replay page.
+
+        Raises:
+            ParameterError: the run was walked without.
+        """
+        page = self.path / REPLAY
+        if not page.is_file():
+            raise ParameterError(
+                f"{self.path}: no {REPLAY}; allowed: a run that was walked with its replay; "
+                "walk again without --no-replay"
+            )
+        return page
 
     @property
     def plots(self) -> Path:

@@ -188,13 +188,9 @@ def serve_replay(run: Path, *, open_browser: bool, console: Console) -> None:
         ParameterError: the folder holds no run, or a run without replay.
     """
     # A run folder holds what a simulation returns, and a simulation shows itself with this module.
-    from humanwalk.run.folder import REPLAY, Run
+    from humanwalk.run.folder import Run
 
     page = Run.open(run).replay
-    if not page.is_file():
-        raise ParameterError(
-            f"{run}: no {REPLAY}; allowed: a run that was walked with its replay; walk again without --no-replay"
-        )
     with replay_server(page.read_bytes()) as server:
         url = f"http://{LOCALHOST}:{server.server_port}/"
         console.print(f"replay of {run} at {url} (Ctrl-C ends it)", soft_wrap=True)
@@ -246,7 +242,10 @@ def _arrow(side: str) -> str:
 
 
 def _add_arrow(meshcat: Meshcat, path: str) -> None:
-    """Add an arrow along z whose shaft is scaled by its length; it is not seen before it has one."""
+    """Add an arrow along z whose shaft is scaled by its length; it is not seen before it has one.
+
+    It is drawn over the body: the force runs up inside the leg.
+    """
     meshcat.SetProperty(path, "visible", False)
     meshcat.SetObject(f"{path}/shaft/cylinder", Cylinder(0.011, 1.0), ARROW_COLOR)
     meshcat.SetTransform(f"{path}/shaft/cylinder", RigidTransform(np.array([0.0, 0.0, 0.5])))
@@ -254,3 +253,10 @@ def _add_arrow(meshcat: Meshcat, path: str) -> None:
     meshcat.SetTransform(
         f"{path}/head/cone", RigidTransform(RotationMatrix.MakeXRotation(np.pi), np.array([0.0, 0.0, 0.07]))
     )
+    for part in ("shaft/cylinder", "head/cone"):
+        drawn = f"{path}/{part}/<object>"
+        meshcat.SetProperty(drawn, "material.depthTest", False)
+        # What is see-through is drawn after the rest, and then by this order.
+        meshcat.SetProperty(drawn, "material.transparent", True)
+        meshcat.SetProperty(drawn, "renderOrder", 1.0)
+        meshcat.SetProperty(drawn, "castShadow", False)

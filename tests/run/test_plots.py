@@ -1,13 +1,18 @@
 import hashlib
+import io
+import os
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from PIL import Image, ImageFilter
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import write_run
 from humanwalk.run.plots import PLOTS, write_gait_figures, write_plots
 from humanwalk.run.plots.drawing import SIDE
+from humanwalk.run.plots.gait_cycle import CYCLE, JOINTS, people
 from humanwalk.run.plots.gait_figures import GAIT_FIGURES
 from humanwalk.run.signals import TIME, signal_columns
 from humanwalk.run.simulate import Outcome
@@ -17,13 +22,13 @@ PERIOD = 0.01
 STRIDE = 0.6
 WEIGHT = 70 * 9.81
 
-NEED_STRIDES = {"joint_torques"}
+NEED_STRIDES = {"joint_torques", "gait_cycle_angles", "joint_power"}
 NEED_STEADY_WALK = {"tracking_error"}
 NEED_SUPPORT = {"support_force", "support_torque"}
 
 THESIS_NAMES = {name for name in PLOTS if name.startswith("figure_5_")}
 
-UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]")
+UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]", "[W/kg]")
 
 
 def made_up_signals(joints, duration: float) -> pa.Table:
@@ -284,3 +289,102 @@ def test_the_points_of_a_path_begin_where_the_man_stands(name):
     points = next(line for line in axes.get_lines() if "points" in line.get_label()).get_xydata()
     np.testing.assert_allclose(points[0], (25.0, -5.0))
     assert np.linalg.norm(np.diff(points, axis=0), axis=1).max() <= 1.4 + 1e-9
+
+
+def test_the_people_are_those_of_the_source():
+    for _, _, quantity in JOINTS.values():
+        cycle, mean, sd = people(quantity)
+        np.testing.assert_array_equal(cycle, np.arange(0, 101, 2))
+        assert sd.min() > 0.0
+        # Heel strike ends the cycle that it begins.
+        assert mean[0] == pytest.approx(mean[-1], abs=1.5)
+    _, knee, _ = people("knee_flexion_deg")
+    assert 65 <= np.arange(0, 101, 2)[knee.argmax()] <= 80
+    assert 50.0 < knee.max() < 70.0
+
+
+def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_people(make_run):
+    run = make_run()
+    figure = PLOTS["gait_cycle_angles"](run)
+    for axes, (motion, (_, _, quantity)) in zip(figure.axes, JOINTS.items(), strict=True):
+        (shown,) = (line for line in axes.get_lines() if line.get_label().startswith("right"))
+        angle = np.degrees(run.signals[f"Right{motion}.angle_rad"].to_numpy())
+        # Every stride of the made-up walk is the same sine.
+        assert np.ptp(shown.get_ydata()) == pytest.approx(np.ptp(angle), rel=0.02)
+        np.testing.assert_allclose(shown.get_xdata(), CYCLE)
+        assert shown.get_ydata()[0] == pytest.approx(shown.get_ydata()[-1], abs=0.05 * np.ptp(angle))
+        _, mean, sd = people(quantity)
+        band = axes.collections[0].get_paths()[0].vertices
+        assert band[:, 1].max() == pytest.approx((mean + sd).max())
+        assert band[:, 1].min() == pytest.approx((mean - sd).min())
+
+
+def test_power_is_torque_times_rate_per_mass(make_run):
+    def steady_power(signals):
+        columns = {name: signals[name].to_numpy() for name in signals.column_names}
+        columns["RightLegTibiaMotion.torque_N_m"] = np.full(len(signals), 35.0)
+        columns["RightLegTibiaMotion.velocity_rad_s"] = np.full(len(signals), -2.0)
+        return pa.table(columns)
+
+    knee = PLOTS["joint_power"](make_run(change=steady_power)).axes[1]
+    (shown,) = (line for line in knee.get_lines() if line.get_label().startswith("right"))
+    np.testing.assert_allclose(shown.get_ydata(), -1.0)
+
+
+BASELINES = Path(__file__).parent.parent / "data" / "plots"
+"""Pictures of the plots that were looked at; WRITE_BASELINES=1 pytest tests/run/test_plots.py draws them anew."""
+
+IMAGE_DPI = 72
+IMAGE_TOLERANCE = 4.0
+"""Greatest rms difference of a plot from its picture, of 255, both blurred: fonts and edges may move by a pixel."""
+
+LOOKED_AT = (
+    "figure_4_02_forward_path",
+    "figure_5_08_right_knee_angle",
+    "figure_5_17_left_foot_y",
+    "gait_cycle_angles",
+    "joint_power",
+    "ground_reaction",
+    "centre_of_pressure",
+    "support_force",
+    "joint_torques",
+    "tracking_error",
+)
+
+
+def drawn(figure) -> Image.Image:
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=IMAGE_DPI)
+    return Image.open(file).convert("RGB")
+
+
+def rms_difference(one: Image.Image, other: Image.Image) -> float:
+    if one.size != other.size:
+        return 255.0
+    blurred = (np.asarray(image.filter(ImageFilter.GaussianBlur(2.0)), dtype=float) for image in (one, other))
+    first, second = blurred
+    return float(np.sqrt(((first - second) ** 2).mean()))
+
+
+@pytest.mark.parametrize("name", LOOKED_AT)
+def test_a_plot_looks_like_the_picture_that_was_looked_at(make_run, name):
+    picture = drawn(GAIT_FIGURES[name]() if name in GAIT_FIGURES else PLOTS[name](make_run()))
+    baseline = BASELINES / f"{name}.png"
+    if os.environ.get("WRITE_BASELINES"):
+        baseline.parent.mkdir(parents=True, exist_ok=True)
+        picture.quantize(64).save(baseline, optimize=True)
+    with Image.open(baseline) as known:
+        assert rms_difference(picture, known.convert("RGB")) < IMAGE_TOLERANCE
+
+
+def test_another_curve_is_another_picture(make_run):
+    def late(signals):
+        columns = {name: signals[name].to_numpy() for name in signals.column_names}
+        columns["RightLegTibiaMotion.angle_rad"] = np.roll(columns["RightLegTibiaMotion.angle_rad"], 10)
+        return pa.table(columns)
+
+    with Image.open(BASELINES / "figure_5_08_right_knee_angle.png") as known:
+        assert (
+            rms_difference(drawn(PLOTS["figure_5_08_right_knee_angle"](make_run(change=late))), known.convert("RGB"))
+            > 2.0 * IMAGE_TOLERANCE
+        )

@@ -30,6 +30,8 @@ INK = "#202020"
 DESIRED = "#bdbdbd"
 REFERENCE = "#777777"
 STANCE = "#e9edf2"
+PEOPLE, PEOPLE_LINE = "#d9d9d9", "#808080"
+"""Band and mean of people that a run is compared with."""
 
 TITLE_SIZE, LABEL_SIZE, TICK_SIZE = 9.5, 9.0, 8.0
 

@@ -1,0 +1,30 @@
+import pytest
+
+from humanwalk.run.browser import find_browser
+from humanwalk.run.folder import REPLAY, write_run
+from humanwalk.run.replay import make_meshcat, static_page
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+
+DURATION = 0.5
+"""Of the run that is looked at [s]: one step."""
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Skips what needs a browser where there is none, or none of the packages that drive it."""
+    pytest.importorskip("playwright.sync_api")
+    pytest.importorskip("imageio_ffmpeg")
+    if find_browser() is None:
+        pytest.skip("no Chromium or Chrome on the PATH or in $CHROMIUM")
+
+
+@pytest.fixture(scope="session")
+def short_run(browser, tmp_path_factory):
+    """A run with its replay."""
+    meshcat = make_meshcat()
+    outcome = simulate(load_scenario("thesis", {"duration": str(DURATION)}), meshcat)
+    folder = tmp_path_factory.mktemp("runs") / "short"
+    folder.mkdir()
+    (folder / REPLAY).write_text(static_page(meshcat), encoding="utf-8")
+    return write_run(folder, outcome, "thesis")

@@ -1,0 +1,57 @@
+import numpy as np
+import pytest
+from PIL import Image
+from pydrake.multibody.plant import MultibodyPlant
+
+from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.run.browser import Camera, open_stage
+from humanwalk.run.signals import TIME, matrix, signal_columns
+from humanwalk.run.video import camera
+
+pytestmark = pytest.mark.browser
+
+WIDTH, HEIGHT = 160, 120
+FRAME_TIMES = (0.125, 0.375)
+"""Frames of the replay, at 32 per second, that are instants of the signals, at 200 per second, too."""
+
+
+@pytest.fixture(scope="module")
+def stage(short_run):
+    with open_stage(short_run.replay, WIDTH, HEIGHT) as stage:
+        yield stage
+
+
+def states(run, plant: MultibodyPlant, joints, time):
+    signals = run.signals
+    (row,) = np.flatnonzero(np.isclose(signals[TIME].to_numpy(), time, rtol=0.0, atol=1e-9))
+    return matrix(signals, signal_columns(joints)["state"])[row][: plant.num_positions()]
+
+
+@pytest.mark.parametrize("time", FRAME_TIMES)
+@pytest.mark.parametrize("body", ["Pelvis", "Head", "RightLeg_FootToes", "LeftLeg_Ankle", "LeftArm_Hand"])
+def test_a_frame_shows_the_recorded_pose_of_every_body(stage, short_run, joints, time, body):
+    plant = kinematics_plant(Subject())
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, states(short_run, plant, joints, time))
+    expected = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(body)).GetAsMatrix4()
+    shown = np.reshape(stage.pose(time, body), (4, 4)).T
+    np.testing.assert_allclose(shown, expected, rtol=0.0, atol=1e-6)
+
+
+def test_the_page_logs_no_complaint_and_asks_no_other_host(stage):
+    stage.still(0.1, camera("follow", 0.1))
+    assert stage.complaints == []
+
+
+@pytest.mark.parametrize("view", ["follow", "side", "front", "orbit"])
+def test_every_view_shows_the_walker_before_the_sky(stage, tmp_path, view):
+    def pixels(look):
+        path = tmp_path / "still.png"
+        path.write_bytes(stage.still(0.25, look, "png"))
+        return np.asarray(Image.open(path).convert("RGB"), dtype=float)
+
+    sky_only = pixels(Camera((0.0, -4.7, 30.0), (0.0, 0.0, 60.0)))
+    picture = pixels(camera(view, 0.25))
+    assert picture.shape == (HEIGHT, WIDTH, 3)
+    middle = picture[HEIGHT // 4 : -HEIGHT // 4, WIDTH // 2 - 6 : WIDTH // 2 + 6]
+    assert np.abs(middle - sky_only[HEIGHT // 4 : -HEIGHT // 4, WIDTH // 2 - 6 : WIDTH // 2 + 6]).mean() > 20.0

@@ -1,0 +1,104 @@
+import hashlib
+import signal
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from humanwalk.quantity import ParameterError
+from humanwalk.run.browser import open_stage
+from humanwalk.run.video import VideoParameters, find_ffmpeg, record_video, write_snapshot
+
+pytestmark = pytest.mark.browser
+
+WIDTH, HEIGHT = 160, 120
+SMALL = VideoParameters(frame_rate=16.0, width=WIDTH, height=HEIGHT)
+
+
+def frame_hashes(video):
+    """One hash a frame, by ffmpeg; of what is decoded, not of the file."""
+    result = subprocess.run(
+        [find_ffmpeg(), "-loglevel", "error", "-i", str(video), "-f", "framemd5", "-"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return [line.split(",")[-1].strip() for line in result.stdout.splitlines() if not line.startswith("#")]
+
+
+def test_a_page_that_asks_another_host_is_noticed_and_refused(short_run, tmp_path):
+    page = tmp_path / "page.html"
+    text = short_run.replay.read_text(encoding="utf-8")
+    policy_begin = text.index('<meta http-equiv="Content-Security-Policy"')
+    policy_end = text.index(">", policy_begin) + 1
+    foreign = '<img src="https://example.invalid/spy.png">'
+    page.write_text(text[:policy_begin] + text[policy_end:].replace("<body>", "<body>" + foreign, 1), encoding="utf-8")
+    with open_stage(page, WIDTH, HEIGHT) as stage:
+        assert any("https://example.invalid/spy.png" in complaint for complaint in stage.complaints)
+
+
+def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run, tmp_path):
+    videos = [tmp_path / name for name in ("one.mp4", "two.mp4")]
+    for video in videos:
+        assert record_video(short_run.path, video, SMALL) == 9
+    hashes = [frame_hashes(video) for video in videos]
+    assert hashes[0] == hashes[1]
+    # It moves.
+    assert len(set(hashes[0])) == 9
+    assert len({hashlib.sha256(video.read_bytes()).digest() for video in videos}) == 1
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp"])
+def test_a_moving_picture_has_every_frame_and_plays_over_and_over(short_run, tmp_path, suffix):
+    path = tmp_path / f"walk{suffix}"
+    record_video(short_run.path, path, VideoParameters(frame_rate=10.0, width=WIDTH, height=HEIGHT))
+    with Image.open(path) as picture:
+        assert picture.n_frames == 6
+        assert picture.size == (WIDTH, HEIGHT)
+        assert picture.info["loop"] == 0
+
+
+def test_ctrl_c_leaves_no_video_and_no_half_of_one(short_run, tmp_path):
+    def press(done, frames):
+        if done == 2:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        record_video(short_run.path, tmp_path / "walk.mp4", SMALL, press)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_strip_holds_a_still_for_every_time(short_run, tmp_path):
+    path = tmp_path / "strip.png"
+    write_snapshot(short_run.path, path, [0.1, 0.2, 0.3], 100, 160, "side")
+    with Image.open(path) as strip:
+        pixels = np.asarray(strip.convert("RGB"), dtype=float)
+    assert pixels.shape == (160 + 30, 3 * 100 + 2 * 8, 3)
+    first, second, third = (pixels[:160, left : left + 100] for left in (0, 108, 216))
+    assert np.abs(first - second).max() > 20.0
+    assert np.abs(second - third).max() > 20.0
+    # The gaps are white.
+    assert pixels[:, 100:108].min() == 255.0
+
+
+def test_a_stretch_or_time_outside_the_replay_is_refused(short_run, tmp_path):
+    with pytest.raises(ParameterError, match=r"--to: 2 .*allowed: 0 to 0.5 s"):
+        record_video(short_run.path, tmp_path / "walk.mp4", VideoParameters(end=2.0))
+    with pytest.raises(ParameterError, match=r"--times: 3 .*allowed: 0 to 0.5 s"):
+        write_snapshot(short_run.path, tmp_path / "strip.png", [0.1, 3.0], 100, 160, "side")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_browser_that_is_none_is_named(short_run, tmp_path, monkeypatch):
+    monkeypatch.setenv("CHROMIUM", "/bin/false")
+    with pytest.raises(ParameterError, match=r"/bin/false does not start.*CHROMIUM") as error:
+        record_video(short_run.path, tmp_path / "walk.mp4", SMALL)
+    assert "\n" not in str(error.value)
+
+
+def test_a_browser_without_webgl_is_told_from_one_with(short_run, tmp_path, monkeypatch):
+    monkeypatch.setattr("humanwalk.run.browser.FLAGS", ("--disable-gpu", "--disable-3d-apis"))
+    with pytest.raises(ParameterError, match=r"no WebGL.*install chromium"):
+        record_video(short_run.path, tmp_path / "walk.mp4", SMALL)
+    assert list(tmp_path.iterdir()) == []
