@@ -92,6 +92,25 @@ def plot(
         console.print(f"{run}: nothing to draw of what was asked for", soft_wrap=True)
 
 
+@app.command(
+    epilog="Examples: humanwalk export runs/thesis --to opensim  |  humanwalk export runs/thesis --to c3d -o lab"
+)
+def export(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    to: Annotated[str, typer.Option("--to", help="opensim, c3d, csv or mat.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder to write into. Default: the format's name in the run's."),
+    ] = None,
+) -> None:
+    """Write a run for another program: OpenSim, motion-capture software, a spreadsheet, MATLAB."""
+    from humanwalk.run.export import export_run
+    from humanwalk.run.folder import Run
+
+    for path in export_run(Run.open(run), to, output):
+        console.print(f"{path}", soft_wrap=True)
+
+
 @app.command()
 def scenarios() -> None:
     """List the scenarios that come with humanwalk."""
