@@ -29,10 +29,14 @@ from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.pd_control import ActuatorParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.gait.recorded_motion import FollowParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
 Contact = Literal["point", "hydroelastic"]
+
+LARGEST_FILE = 1_000_000
+"""Of a scenario [bytes]; a complete one has two thousand, and a parser may need thousands of times a file's size."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +135,7 @@ class Scenario:
     """Whose body."""
 
     gait: GaitParameters = GaitParameters()
+    follow: FollowParameters = FollowParameters()
     start: StartParameters = StartParameters()
     inverse_kinematics: InverseKinematicsParameters = InverseKinematicsParameters()
     actuators: ActuatorParameters = ActuatorParameters()
@@ -147,6 +152,11 @@ class Scenario:
         check(self)
         for name, angle in self.start.joint_angles.items():
             require_in_range(f"start.joint_angles.{name}", angle, "rad", -math.pi, math.pi)
+        if self.follow.file and (self.balance.foot_force.enabled or self.balance.upper_body.enabled):
+            raise ParameterError(
+                "follow.file: a recording is followed joint by joint, which balance.foot_force and balance.upper_body "
+                "would change; allowed: with balance.support or nothing; set their enabled: false"
+            )
         simulation = self.simulation
         if simulation.integrator == "cenic" and simulation.time_step != 0:
             raise ParameterError(
@@ -179,14 +189,24 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     """
     shipped = shipped_scenarios()
     path = shipped.get(str(name_or_path), Path(name_or_path))
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "is not text"
-        raise ParameterError(
-            f"scenario: {name_or_path}: {reason}; allowed: {', '.join(shipped)}, or the path of a YAML file"
-        ) from None
+    text = _read_text(path, f"scenario: {name_or_path}", f"{', '.join(shipped)}, or the path of a YAML file")
     return parse_scenario(text, overrides, name=path.name)
+
+
+def load_as[T](kind: type[T], path: Path) -> T:
+    """A YAML file as an instance of a dataclass of parameters, read as strictly as a scenario.
+
+    Raises:
+        ParameterError: it cannot be read, or a value cannot be used; one line.
+    """
+    text = _read_text(path, str(path), "a YAML file")
+    try:
+        parameters = _build(kind, _read_yaml(text, path.name), "")
+        check(parameters)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from None
+    assert isinstance(parameters, kind)
+    return parameters
 
 
 def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario") -> Scenario:
@@ -203,6 +223,20 @@ def dump_scenario(scenario: Scenario) -> str:
     """The complete scenario as YAML, every field written out; `parse_scenario` reads it back to an equal one."""
     text: str = yaml_dump(dataclasses.asdict(scenario))
     return text
+
+
+def _read_text(path: Path, name: str, allowed: str) -> str:
+    try:
+        if path.exists() and not path.is_file():
+            raise ParameterError(f"{name}: is no file; allowed: {allowed}")
+        if path.stat().st_size > LARGEST_FILE:
+            raise ParameterError(f"{name}: too large; allowed: up to {LARGEST_FILE // 1000} kB; is it a scenario?")
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        if isinstance(error, ParameterError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) else "is not text"
+        raise ParameterError(f"{name}: {reason}; allowed: {allowed}") from None
 
 
 def _read_yaml(text: str, name: str) -> dict[str, Any]:

@@ -43,14 +43,26 @@ def walk(
     ] = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
     set_: SetOption = [],  # noqa: B006
+    follow: Annotated[
+        Path | None, typer.Option(help="Follow the joint angles of a recording (.mot, .sto, .csv) instead of the gait.")
+    ] = None,
+    mapping: Annotated[
+        Path | None, typer.Option(help="YAML file: which column of the recording is which joint, in what unit.")
+    ] = None,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
-    from humanwalk.run.walk import walk_and_write
+    from humanwalk.run.walk import follow_overrides, walk_and_write
 
     overrides = _overrides(set_)
+    if follow is not None:
+        overrides |= follow_overrides(follow, mapping)
+    elif mapping is not None:
+        raise ParameterError(
+            f"--mapping {mapping}: is for a recording; allowed: with --follow FILE; name the recording"
+        )
     if duration is not None:
         overrides["duration"] = repr(duration)
     run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)

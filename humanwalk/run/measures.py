@@ -49,7 +49,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "steady_from_s": steady_from(scenario),
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
-        "commanded_speed_m_s": scenario.gait.ramp.speed,
+        "commanded_speed_m_s": None if scenario.follow.file else scenario.gait.ramp.speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
         "foot_lift_m": {side.lower(): foot_lift(signals, side) for side in SIDES},
         "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
@@ -61,7 +61,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "peak_torque_N_m": {name: float(np.abs(signals[f"{name}.torque_N_m"].to_numpy()).max()) for name in joints},
         "saturated_share": {name: float(signals[f"{name}.saturated"].to_numpy().mean()) for name in joints},
         "tracking_error_rad": {name: tracking_error(signals, name, steady) for name in joints},
-        "ik_converged_share": float(matrix(signals, [f"{side.lower()}_leg.ik_converged" for side in SIDES]).mean()),
+        "ik_converged_share": ik_converged_share(signals),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
         "wall_time_s": outcome.wall_time,
         "realtime_factor": float(time[-1]) / outcome.wall_time,
@@ -71,7 +71,12 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
 
 
 def steady_from(scenario: Scenario) -> float:
-    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed."""
+    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed.
+
+    A recording is taken to be steady from when it runs at full speed.
+    """
+    if scenario.follow.file:
+        return scenario.follow.ease_in
     return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
 
 
@@ -142,6 +147,12 @@ def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -
         return None
     error = signals[f"{joint}.desired_angle_rad"].to_numpy() - signals[f"{joint}.angle_rad"].to_numpy()
     return float(np.sqrt((error[rows] ** 2).mean()))
+
+
+def ik_converged_share(signals: pa.Table) -> float | None:
+    """Share of the samples at which a leg's inverse kinematics had converged; null where none was solved."""
+    columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
+    return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
 
 
 def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:

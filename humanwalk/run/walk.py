@@ -1,5 +1,6 @@
 """One walk from the command line: simulate with a progress bar, write the run folder, print the summary."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
+from humanwalk.gait.motion_table import read_motion_table
 from humanwalk.run.files import write_text
 from humanwalk.run.folder import REPLAY, Run, new_run_folder, write_run
 from humanwalk.run.plots import write_plots
@@ -65,6 +67,20 @@ def walk_and_write(
     return run
 
 
+def follow_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
+    """Overrides for a scenario that follows a recording to its end.
+
+    Raises:
+        ParameterError: the recording cannot be read.
+    """
+    time = read_motion_table(recording).time
+    # JSON is YAML, and quotes whatever a path may hold.
+    overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
+    if mapping is not None:
+        overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
+    return overrides
+
+
 def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: bool, console: Console) -> Outcome:
     columns = (
         TextColumn("{task.description}"),
@@ -92,8 +108,9 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     def row(what: str, value: float | None, form: str, unit: str) -> None:
         table.add_row(what, "-" if value is None else format(value, form), unit)
 
+    commanded = summary["commanded_speed_m_s"]
     row(
-        "mean speed (commanded " + format(summary["commanded_speed_m_s"], "g") + ")",
+        "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})",
         summary["mean_speed_m_s"],
         ".3f",
         "m/s",
