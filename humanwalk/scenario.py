@@ -227,7 +227,8 @@ def dump_scenario(scenario: Scenario) -> str:
 
 def _read_text(path: Path, name: str, allowed: str) -> str:
     try:
-        if path.exists() and not path.is_file():
+        # A pipe or a device may never end.
+        if path.exists() and not (path.is_file() or path.is_dir()):
             raise ParameterError(f"{name}: is no file; allowed: {allowed}")
         if path.stat().st_size > LARGEST_FILE:
             raise ParameterError(f"{name}: too large; allowed: up to {LARGEST_FILE // 1000} kB; is it a scenario?")

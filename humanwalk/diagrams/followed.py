@@ -175,9 +175,9 @@ class _Columns:
         row, i = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
         if beyond[row, i] > RANGE_TOLERANCE:
             raise ParameterError(
-                f"{self._file}: {joints.names[i]} is {angles[row, i]:.3g} rad ({np.rad2deg(angles[row, i]):.0f} deg) at "
-                f"{self._table.time[row]:g} s; allowed: {joints.lower[i]:.3g} to {joints.upper[i]:.3g} rad; check the "
-                "unit (angle_unit) and the sign (scale: -1) in --mapping"
+                f"{self._file}: {joints.names[i]} is {angles[row, i]:.3g} rad ({np.rad2deg(angles[row, i]):.0f} deg) "
+                f"at {self._table.time[row]:g} s; allowed: {joints.lower[i]:.3g} to {joints.upper[i]:.3g} rad; "
+                "check the unit (angle_unit) and the sign (scale: -1) in --mapping"
             )
 
 

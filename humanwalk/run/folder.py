@@ -4,16 +4,24 @@ import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder, write_text, write_whole
 from humanwalk.run.measures import summarize
+from humanwalk.run.signals import TIME, column_of, unit_of
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = npt.NDArray[np.float64]
 
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
@@ -29,12 +37,13 @@ class Run:
     path: Path
 
     @staticmethod
-    def open(path: Path) -> "Run":
+    def open(path: Path | str) -> "Run":
         """The run in a folder.
 
         Raises:
             ParameterError: the folder holds no run.
         """
+        path = Path(path)
         for name in (SCENARIO, SIGNALS, SUMMARY):
             if not (path / name).is_file():
                 raise ParameterError(
@@ -58,6 +67,40 @@ class Run:
         """The measures; see `humanwalk.run.measures.summarize`."""
         summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
         return summary
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every signal, "" for a pure number."""
+        return {name: unit_of(name) for name in self.signals.column_names}
+
+    @property
+    def time(self) -> Array:
+        """When the signals were sampled [s], shape (rows,)."""
+        return self[TIME]
+
+    def __getitem__(self, name: str) -> Array:
+        """A signal, shape (rows,), by its column's name with or without the unit: run["com.x"].
+
+        Raises:
+            ParameterError: there is none of that name.
+        """
+        values: Array = self.signals[column_of(self.signals.column_names, name)].to_numpy()
+        return values
+
+    def plot(self, name: str) -> "Figure":
+        """A plot of the run by its name, as a matplotlib figure; a notebook shows it.
+
+        Raises:
+            ParameterError: no such plot, or the run has nothing to draw for it.
+        """
+        # Plots draw runs.
+        from humanwalk.run.plots import PLOTS as DRAWINGS
+
+        figure = DRAWINGS[name](self) if name in DRAWINGS else None
+        if figure is None:
+            allowed = ", ".join(DRAWINGS)
+            raise ParameterError(f"{name}: no such plot, or nothing to draw; allowed: {allowed}; choose another")
+        return figure
 
     @property
     def replay(self) -> Path:

@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pyarrow as pa
 from pydrake.geometry import Meshcat
@@ -16,6 +18,9 @@ from humanwalk.run.monitor import Monitor
 from humanwalk.run.replay import add_visualizer
 from humanwalk.run.signals import Recorder
 from humanwalk.scenario import Scenario
+
+if TYPE_CHECKING:
+    from humanwalk.run.folder import Run
 
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
@@ -41,6 +46,19 @@ class Outcome:
     def survived(self) -> bool:
         """Whether the walker was up for the whole duration."""
         return self.end == "completed"
+
+    def save(self, path: Path | str, name: str = "script") -> "Run":
+        """Write scenario, signals and summary into a new or empty folder, and return the run.
+
+        Raises:
+            ParameterError: the folder holds files already, or cannot be written.
+        """
+        # A run folder holds what a simulation returns.
+        from humanwalk.run.folder import new_run_folder, write_run
+
+        folder = Path(path)
+        new_run_folder(folder, name)
+        return write_run(folder, self, name)
 
 
 def simulate(
