@@ -13,7 +13,8 @@ import pyarrow.parquet as pq
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder, write_text, write_whole
-from humanwalk.run.measures import summarize
+from humanwalk.run.gait_measures import gait_measures
+from humanwalk.run.measures import steady_from, summarize
 from humanwalk.run.signals import TIME, column_of, unit_of
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
@@ -138,6 +139,7 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> Path:
 def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
     """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all."""
     summary = summarize(outcome, scenario_name)
+    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario))
     metadata = {b"humanwalk": json.dumps({key: summary[key] for key in ("scenario", "seed", "versions")}).encode()}
     signals = outcome.signals.replace_schema_metadata(metadata)
     write_text(path / SCENARIO, dump_scenario(outcome.scenario))
