@@ -23,6 +23,7 @@ console = Console(stderr=True)
 
 BAD_INPUT = 2
 FELL = 1
+DIFFERS = 1
 INTERRUPTED = 130
 
 ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
@@ -121,6 +122,22 @@ def export(
 
     for path in export_run(Run.open(run), to, output):
         console.print(f"{path}", soft_wrap=True)
+
+
+@app.command(epilog="Example: humanwalk reproduce runs/thesis")
+def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
+    """Simulate a run again, and say whether its bits, or else its measures, come out the same."""
+    from humanwalk.run.folder import Run
+    from humanwalk.run.reproduce import reproduce as repeat
+
+    opened = Run.open(run)
+    with console.status(f"simulating {opened.time[-1]:g} s again"):
+        result = repeat(opened)
+    for note in result.notes:
+        console.print(note, soft_wrap=True)
+    console.print(f"{run}: {result.verdict}", soft_wrap=True)
+    if not result.measures_agree:
+        raise typer.Exit(DIFFERS)
 
 
 @app.command()

@@ -15,6 +15,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder, write_text, write_whole
 from humanwalk.run.gait_measures import gait_measures
 from humanwalk.run.measures import steady_from, summarize
+from humanwalk.run.provenance import provenance
 from humanwalk.run.signals import TIME, column_of, unit_of
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
@@ -136,11 +137,21 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> Path:
         number += 1
 
 
-def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
-    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all."""
+def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
+    """Everything that summary.json says of a simulation."""
     summary = summarize(outcome, scenario_name)
     summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario))
-    metadata = {b"humanwalk": json.dumps({key: summary[key] for key in ("scenario", "seed", "versions")}).encode()}
+    summary["provenance"] = provenance(outcome.scenario, outcome.signals)
+    return summary
+
+
+def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
+    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all.
+
+    The summary comes last: a folder that has one is a complete run.
+    """
+    summary = measure(outcome, scenario_name)
+    metadata = {b"humanwalk": json.dumps({"scenario": scenario_name} | summary["provenance"]).encode()}
     signals = outcome.signals.replace_schema_metadata(metadata)
     write_text(path / SCENARIO, dump_scenario(outcome.scenario))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))

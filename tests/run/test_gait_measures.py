@@ -117,7 +117,9 @@ def test_excursion_of_the_centre_of_pressure_is_per_stance():
 def test_joint_work_is_per_stride_and_split_by_sign():
     """Power 40 sin: half a wave of it is 40 / pi over a stride of one second."""
     work = gait_measures(walk(), 0.0)["joint_work_J"]
-    assert work == {"knee": {"positive": pytest.approx(40 / np.pi, rel=1e-3), "negative": pytest.approx(-40 / np.pi, rel=1e-3)}}
+    assert work == {
+        "knee": {"positive": pytest.approx(40 / np.pi, rel=1e-3), "negative": pytest.approx(-40 / np.pi, rel=1e-3)}
+    }
 
 
 def test_joint_work_sums_to_the_change_of_energy():
