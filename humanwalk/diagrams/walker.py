@@ -6,7 +6,8 @@ from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.body import SIDES
-from humanwalk.control.balance_support import largest_support_step
+from humanwalk.body.plant import Subject
+from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.control.joint_map import base_first_mass_matrix
 from humanwalk.control.stability import round_down
 from humanwalk.diagrams.followed import followed_motion
@@ -82,8 +83,12 @@ def make_walker(scenario: Scenario) -> Diagram:
         )
 
     if scenario.balance.support.enabled:
-        _require_stable_support(human, scenario)
-        support = builder.AddNamedSystem("support", BalanceSupport(plant, scenario.balance.support))
+        subject, reference_body = scenario.subject, Subject()
+        parameters = scenario.balance.support.scaled(
+            subject.mass / reference_body.mass, subject.stature / reference_body.stature
+        )
+        _require_stable_support(human, parameters)
+        support = builder.AddNamedSystem("support", BalanceSupport(plant, parameters))
         builder.Connect(reference.pelvis_pose, support.get_reference_pose_input_port())
         builder.Connect(reference.pelvis_velocity, support.get_reference_velocity_input_port())
         builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
@@ -179,16 +184,16 @@ def _add_gait(
     )
 
 
-def _require_stable_support(human: HumanPlant, scenario: Scenario) -> None:
+def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:
     """Raise ParameterError if the support, an explicit force, would diverge at the plant's step."""
     plant = human.plant
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
-    stable = largest_support_step(M, human.kp, human.kd, scenario.balance.support)
+    stable = largest_support_step(M, human.kp, human.kd, parameters)
     if plant.time_step() > stable:
         raise ParameterError(
             f"balance.support: unstable at time_step {plant.time_step():g} s; allowed: steps up to "
-            f"{round_down(stable):g} s with this stiffness and damping; lower rotational_damping "
-            f"({scenario.balance.support.rotational_damping:g}) or damping ({scenario.balance.support.damping:g})"
+            f"{round_down(stable):g} s with this stiffness and damping; lower simulation.time_step, or "
+            "rotational_damping and damping"
         )
 
 

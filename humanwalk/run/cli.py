@@ -19,7 +19,8 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
-console = Console(stderr=True)
+# No markup: a folder may well be named [2].
+console = Console(stderr=True, markup=False)
 
 BAD_INPUT = 2
 FELL = 1
@@ -167,7 +168,7 @@ def model(
     from humanwalk.run.files import write_text
 
     subject = Subject(mass=mass, stature=stature)
-    check(subject, "--subject")
+    check(subject, "subject")
     write_text(output, to_sdf(subject.skeleton))
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
 

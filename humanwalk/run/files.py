@@ -44,18 +44,20 @@ def write_text(path: Path, text: str) -> None:
     write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
 
 
-def make_folder(path: Path) -> None:
-    """Make a folder and its parents, unless it is there already.
+def make_folder(path: Path) -> list[Path]:
+    """Make a folder and its parents, unless it is there already, and return those that were made, innermost first.
 
     Raises:
         ParameterError: it cannot be made or written into.
     """
+    made = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path):
             pass
     except OSError as error:
         raise ParameterError(_cannot_write(path, error)) from None
+    return made
 
 
 def _cannot_write(path: Path, error: OSError) -> str:

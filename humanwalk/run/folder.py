@@ -115,8 +115,11 @@ class Run:
         return self.path / PLOTS
 
 
-def new_run_folder(wanted: Path | None, scenario_name: str) -> Path:
+def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[Path]]:
     """Make the folder of a new run: the wanted one, else runs/NAME, runs/NAME-2, and so on.
+
+    Returns:
+        The folder, and the folders that were made for it, innermost first.
 
     Raises:
         ParameterError: the wanted folder is not empty, or cannot be made.
@@ -126,14 +129,12 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> Path:
             raise ParameterError(
                 f"-o {wanted}: holds files already; allowed: a new or empty folder; choose another, or remove it first"
             )
-        make_folder(wanted)
-        return wanted
+        return wanted, make_folder(wanted)
     number = 1
     while True:
         path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
         if not path.exists():
-            make_folder(path)
-            return path
+            return path, make_folder(path)
         number += 1
 
 

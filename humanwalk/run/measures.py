@@ -1,5 +1,6 @@
 """What a walk amounts to: speed, lift, steps, support, torques, tracking and cost, each with one definition."""
 
+import math
 from importlib.metadata import version
 from itertools import pairwise
 from typing import Any
@@ -31,7 +32,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     """The summary of a run, ready for JSON; keys carry their units.
 
     Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
-    end. A run that ended before has null there.
+    end. A run that ended before has null there, and so has every number that is not finite.
     """
     scenario, signals = outcome.scenario, outcome.signals
     time = signals[TIME].to_numpy()
@@ -39,7 +40,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
     supported = scenario.balance.support.enabled
-    return {
+    summary = {
         "scenario": scenario_name,
         "description": scenario.description,
         "survived": outcome.survived,
@@ -68,6 +69,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
         "seed": scenario.seed,
     }
+    return {key: _finite(value) for key, value in summary.items()}
 
 
 def steady_from(scenario: Scenario) -> float:
@@ -174,6 +176,13 @@ def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: floa
     ).sum(axis=1)
     distance = x[-1] - x[0]
     return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
+
+
+def _finite(value: Any) -> Any:
+    """The value, with null for what JSON has no number for."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _slope(time: Array, x: Array) -> float | None:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -46,13 +47,14 @@ def walk_and_write(
     meshcat = make_meshcat() if live or replay else None
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
-    path = new_run_folder(output, name)
+    path, made = new_run_folder(output, name)
     try:
         outcome = _simulate_with_progress(loaded, name, meshcat, live, console)
     except BaseException:
         # Nothing was recorded: an empty folder would only be in the way of the next attempt.
-        if not any(path.iterdir()):
-            path.rmdir()
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
         raise
     run = write_run(path, outcome, name)
     with console.status("writing replay and plots"):
@@ -88,14 +90,20 @@ def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: b
         TextColumn("{task.completed:.1f} of {task.total:g} s"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task(name, total=scenario.duration)
-        return simulate(
-            scenario,
-            meshcat,
-            on_progress=lambda time: progress.update(task, completed=time),
-            realtime_rate=1.0 if live else 0.0,
-        )
+    progress = Progress(*columns, console=console, transient=True)
+    task = progress.add_task(name, total=scenario.duration)
+
+    def show(time: float) -> None:
+        # Started late, so that a scenario that cannot be simulated is answered with a line and no bar.
+        if not progress.live.is_started:
+            progress.start()
+        progress.update(task, completed=time)
+
+    try:
+        return simulate(scenario, meshcat, on_progress=show, realtime_rate=1.0 if live else 0.0)
+    finally:
+        if progress.live.is_started:
+            progress.stop()
 
 
 def summary_table(summary: Mapping[str, Any]) -> Table:
@@ -105,8 +113,8 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column(justify="right")
     table.add_column(justify="left")
 
-    def row(what: str, value: float | None, form: str, unit: str) -> None:
-        table.add_row(what, "-" if value is None else format(value, form), unit)
+    def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
+        table.add_row(what, "-" if value is None else format(per_unit * value, form), unit)
 
     commanded = summary["commanded_speed_m_s"]
     row(
@@ -118,16 +126,14 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     row("distance", summary["distance_m"], ".2f", "m")
     row("steps", summary["steps"], "d", "")
     for side in ("right", "left"):
-        lift = summary["foot_lift_m"][side]
-        row(f"{side} foot lift", None if lift is None else 100 * lift, ".1f", "cm")
-        row(f"{side} foot off its line", 100 * summary["foot_line_error_m"][side], ".2f", "cm")
-    row("lateral drift", 100 * summary["lateral_drift_m"], ".2f", "cm")
-    tracking = summary["pelvis_tracking_rms_m"]
-    row("pelvis off its reference, rms", None if tracking is None else 100 * tracking, ".2f", "cm")
+        row(f"{side} foot lift", summary["foot_lift_m"][side], ".1f", "cm", per_unit=100)
+        row(f"{side} foot off its line", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
+    row("lateral drift", summary["lateral_drift_m"], ".2f", "cm", per_unit=100)
+    row("pelvis off its reference, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
     if summary["external_support"]:
         row("EXTERNAL SUPPORT force, rms", summary["support_force_rms_N"], ".0f", "N")
         row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
-    name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1])
+    name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
     row(f"peak torque, {name}", torque, ".0f", "N m")
     row("cost of transport", summary["cost_of_transport"], ".2f", "")
     row("real-time factor", summary["realtime_factor"], ".2f", "")

@@ -65,3 +65,12 @@ def test_the_longest_way_round_is_not_taken():
 def test_its_damping_for_the_reference_body_is_as_documented():
     mass, p = 70.0, BalanceSupportParameters()
     assert p.damping / (2 * np.sqrt(p.stiffness * mass)) == pytest.approx(0.88, abs=0.005)
+
+
+def test_a_heavier_taller_body_is_supported_alike():
+    """Forces go with the mass, torques with mass times length squared, as the body's inertias do."""
+    bigger = SUPPORT.scaled(2.0, 1.5)
+    shift, turn = np.array([0, 0, 0, 0.01, 0, 0]), np.array([0, 0.01, 0, 0, 0, 0])
+    for error, factor in ((shift, 2.0), (turn, 2.0 * 1.5**2)):
+        reference = support_wrench(displaced(error), ZERO, REFERENCE, ZERO, SUPPORT)
+        np.testing.assert_allclose(support_wrench(displaced(error), ZERO, REFERENCE, ZERO, bigger), factor * reference)

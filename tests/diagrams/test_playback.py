@@ -62,8 +62,8 @@ def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
                 RotationMatrix.MakeYRotation(foot.pitch),
                 [target.pelvis.distance + foot.position[0], foot.position[1], foot.height],
             )
-            # Looser than the tolerance of 1e-6: out of the straight legs of standing the last micrometres are singular.
-                assert np.abs(pose_error(X_WS, wanted)).max() < 5e-5
+            # Looser than the tolerance of 1e-6: out of straight legs, the last micrometres are singular.
+            assert np.abs(pose_error(X_WS, wanted)).max() < 5e-5
 
 
 def test_joints_are_the_desired_ones(played, joints):

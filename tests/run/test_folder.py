@@ -1,0 +1,89 @@
+"""Run folders: complete or refused, never overwritten."""
+
+import json
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder, write_run
+from humanwalk.run.signals import TIME, signal_columns
+from humanwalk.run.simulate import Outcome
+from humanwalk.scenario import load_scenario
+
+
+@pytest.fixture
+def outcome(joints):
+    time = 0.01 * np.arange(50)
+    columns = [name for names in signal_columns(joints).values() for name in names]
+    signals = pa.table({TIME: time, **{name: np.full_like(time, i) for i, name in enumerate(columns)}})
+    return Outcome(load_scenario("thesis", {"seed": "5", "duration": "0.5"}), signals, "completed", wall_time=1.0)
+
+
+def test_run_that_was_written_is_read_back(outcome, tmp_path):
+    write_run(tmp_path, outcome, "thesis")
+    run = Run.open(tmp_path)
+    assert run.scenario == outcome.scenario
+    assert run.signals.equals(outcome.signals)
+    assert run.summary["scenario"] == "thesis"
+    assert run.summary["seed"] == 5
+    assert {path.name for path in tmp_path.iterdir()} == {SCENARIO, SIGNALS, SUMMARY}
+    assert (run.replay.parent, run.plots.parent) == (tmp_path, tmp_path)
+
+
+def test_signals_know_where_they_come_from(outcome, tmp_path):
+    metadata = json.loads(write_run(tmp_path, outcome, "thesis").signals.schema.metadata[b"humanwalk"])
+    assert metadata["scenario"] == "thesis"
+    assert metadata["seed"] == 5
+    assert {"humanwalk", "drake", "numpy"} <= metadata["versions"].keys()
+
+
+@pytest.mark.parametrize("missing", [SCENARIO, SIGNALS, SUMMARY])
+def test_incomplete_folder_is_no_run(outcome, tmp_path, missing):
+    write_run(tmp_path, outcome, "thesis")
+    (tmp_path / missing).unlink()
+    with pytest.raises(ParameterError, match=f"no run, {missing} is missing") as raised:
+        Run.open(tmp_path)
+    assert len(str(raised.value).splitlines()) == 1
+
+
+def test_missing_folder_is_no_run(tmp_path):
+    with pytest.raises(ParameterError, match="no run"):
+        Run.open(tmp_path / "none")
+
+
+def test_new_folders_are_numbered(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = [new_run_folder(None, "thesis")[0].name for _ in range(3)]
+    assert names == ["thesis", "thesis-2", "thesis-3"]
+    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == names
+    assert new_run_folder(None, "other")[0].name == "other"
+
+
+def test_a_file_in_the_way_is_not_overwritten(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "runs" / "thesis").write_text("mine")
+    assert new_run_folder(None, "thesis")[0].name == "thesis-2"
+
+
+def test_wanted_folder_may_be_new_or_empty(tmp_path):
+    wanted = tmp_path / "a" / "b"
+    assert new_run_folder(wanted, "thesis") == (wanted, [wanted, wanted.parent])
+    assert new_run_folder(wanted, "thesis") == (wanted, [])
+
+
+def test_wanted_folder_that_holds_something_is_refused(tmp_path):
+    (tmp_path / "mine").write_text("x")
+    with pytest.raises(ParameterError, match="holds files already") as raised:
+        new_run_folder(tmp_path, "thesis")
+    assert len(str(raised.value).splitlines()) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["mine"]
+
+
+def test_wanted_folder_that_is_a_file_is_refused(tmp_path):
+    (tmp_path / "mine").write_text("x")
+    with pytest.raises(ParameterError):
+        new_run_folder(tmp_path / "mine", "thesis")
+    assert (tmp_path / "mine").read_text() == "x"

@@ -1,0 +1,262 @@
+"""A simulated walk: up for the whole time, on its path, carried by its feet; and runs that end before are kept."""
+
+import os
+import signal
+
+import numpy as np
+import pytest
+
+from humanwalk.body.contact import FRICTION, SOLE_PARTS
+from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.quantity import ParameterError
+from humanwalk.run.measures import SHORTEST_PHASE_S, summarize, touchdowns
+from humanwalk.run.signals import TIME, matrix
+from humanwalk.run.simulate import simulate
+from humanwalk.run.walk import summary_table
+from humanwalk.scenario import load_scenario
+from humanwalk.systems.body_observer import BodyObserver
+
+GRAVITY = 9.81
+SPEED = 1.4
+STRIDE_TIME = FootPathParameters().stride_time(SPEED)
+SIDES = ("right", "left")
+
+
+def thesis(duration: float, **overrides: str):
+    fields = {key.replace("__", "."): value for key, value in overrides.items()}
+    return load_scenario("thesis", {"duration": str(duration)} | fields)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    """The thesis' walk: the ramp, and two whole strides from 0.6 s on."""
+    times = []
+    outcome = simulate(thesis(0.6 + 2 * STRIDE_TIME), on_progress=times.append)
+    return outcome, times
+
+
+@pytest.fixture(scope="module")
+def strides(walk):
+    """Rows of whole strides: means over them are those of the steady walk."""
+    time = walk[0].signals[TIME].to_numpy()
+    return (time >= 0.6 - 1e-9) & (time < 0.6 + 2 * STRIDE_TIME)
+
+
+# The walk.
+
+
+def test_walk_lasts_for_its_duration(walk):
+    outcome, times = walk
+    time = outcome.signals[TIME].to_numpy()
+    assert outcome.end == "completed"
+    assert outcome.survived
+    assert outcome.wall_time > 0
+    np.testing.assert_allclose(np.diff(time), outcome.scenario.recording.signal_period, rtol=1e-6)
+    assert time[-1] == pytest.approx(outcome.scenario.duration, abs=0.005)
+    assert times == sorted(times)
+    assert times[-1] == pytest.approx(outcome.scenario.duration, abs=0.02)
+
+
+def test_every_number_is_finite(walk):
+    for name in walk[0].signals.column_names:
+        assert np.isfinite(walk[0].signals[name].to_numpy()).all(), name
+
+
+def test_speed_is_the_one_that_is_asked_for(walk, strides):
+    signals = walk[0].signals
+    time, x = signals[TIME].to_numpy()[strides], signals["com.x_m"].to_numpy()[strides]
+    assert (x[-1] - x[0]) / (time[-1] - time[0]) == pytest.approx(SPEED, rel=0.05)
+    assert summarize(walk[0], "thesis")["mean_speed_m_s"] == pytest.approx(SPEED, rel=0.05)
+
+
+def test_pelvis_keeps_to_its_reference(walk):
+    signals = walk[0].signals
+    actual = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"])
+    wanted = matrix(signals, [f"pelvis.reference_{axis}_m" for axis in "xyz"])
+    distance = np.linalg.norm(actual - wanted, axis=1)
+    assert np.sqrt((distance**2).mean()) < 0.015
+    assert distance.max() < 0.03
+
+
+def test_quaternion_of_the_pelvis_stays_a_rotation(walk):
+    wxyz = matrix(walk[0].signals, [f"pelvis.quaternion_{part}" for part in "wxyz"])
+    np.testing.assert_allclose(np.linalg.norm(wxyz, axis=1), 1.0, atol=1e-2)
+    assert (wxyz[:, 0] > 0.98).all()
+
+
+def test_weight_is_carried_by_ground_and_support(walk, strides):
+    signals = walk[0].signals
+    ground = matrix(signals, [f"{side}_foot.force_z_N" for side in SIDES])[strides].sum(axis=1)
+    support = signals["support.force_z_N"].to_numpy()[strides]
+    # Newton: over whole strides of a steady walk the mean force is the weight.
+    assert ground.mean() + support.mean() == pytest.approx(70.0 * GRAVITY, rel=0.03)
+    assert ground.mean() > 0.8 * 70.0 * GRAVITY
+
+
+def test_forces_along_the_walk_cancel_over_whole_strides(walk, strides):
+    signals = walk[0].signals
+    for axis in "xy":
+        ground = matrix(signals, [f"{side}_foot.force_{axis}_N" for side in SIDES])[strides].sum(axis=1)
+        support = signals[f"support.force_{axis}_N"].to_numpy()[strides]
+        assert abs(ground.mean() + support.mean()) < 0.05 * 70.0 * GRAVITY
+
+
+def share_out_of_the_friction_cone(signals, side) -> float:
+    force = matrix(signals, [f"{side}_foot.force_{axis}_N" for axis in "xyz"])
+    assert (force[:, 2] >= -1e-9).all()
+    return float((np.hypot(force[:, 0], force[:, 1]) > FRICTION * force[:, 2] + 1.0).mean())
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_friction_stays_in_its_cone(walk, side):
+    # Drake's lagged approximation bounds friction by the normal force of the step before: wrong where feet land.
+    lagged = walk[0].scenario.simulation.contact_approximation == "lagged"
+    assert share_out_of_the_friction_cone(walk[0].signals, side) <= (0.04 if lagged else 0.0)
+
+
+def test_friction_stays_in_its_cone_at_every_step_of_the_similar_approximation():
+    signals = simulate(thesis(0.7, simulation__contact_approximation="similar")).signals
+    assert [share_out_of_the_friction_cone(signals, side) for side in SIDES] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_centre_of_pressure_is_under_the_loaded_foot(walk, side):
+    signals = walk[0].signals
+    loaded = signals[f"{side}_foot.loaded"].to_numpy() > 0
+    x, y = (
+        (signals[f"{side}_foot.cop_{axis}_m"].to_numpy() - signals[f"{side}_sole.{axis}_m"].to_numpy())[loaded]
+        for axis in "xy"
+    )
+    turned = 0.01
+    assert loaded.mean() > 0.3
+    assert x.min() > SOLE_PARTS[0].x[0] - turned
+    assert x.max() < SOLE_PARTS[-1].x[1] + turned
+    assert np.abs(y).max() < 0.5 * max(part.width for part in SOLE_PARTS) + turned
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_inverse_kinematics_reach_every_sole(walk, side):
+    assert walk[0].signals[f"{side}_leg.ik_residual"].to_numpy().max() < 1e-4
+
+
+def test_feet_alternate_and_are_on_the_ground_about_when_they_should(walk):
+    signals = walk[0].signals
+    landings = sorted((time, side) for side in ("Right", "Left") for time in touchdowns(signals, side))
+    assert [side for _, side in landings[:5]] == ["Right", "Left", "Right", "Left", "Right"]
+    assert np.diff([time for time, _ in landings]) == pytest.approx(STRIDE_TIME / 2, abs=SHORTEST_PHASE_S)
+    for side in SIDES:
+        scheduled = signals[f"{side}_foot.scheduled"].to_numpy() > 0
+        loaded = signals[f"{side}_foot.force_z_N"].to_numpy() > 50.0
+        assert (scheduled == loaded).mean() > 0.7
+
+
+def test_feet_lift_about_as_high_as_commanded(walk):
+    lift = summarize(walk[0], "thesis")["foot_lift_m"]
+    assert lift["right"] == pytest.approx(0.2, abs=0.02)
+    assert lift["left"] == pytest.approx(0.2, abs=0.02)
+
+
+def test_joints_follow_their_desired_angles(walk):
+    errors = summarize(walk[0], "thesis")["tracking_error_rad"]
+    assert max(errors.values()) < 0.06
+
+
+def test_support_is_reported(walk):
+    summary = summarize(walk[0], "thesis")
+    assert summary["external_support"] is True
+    assert summary["support_force_rms_N"] > 10.0
+    # The record's force is that of a spring-damper which pulls towards the reference, for the most part.
+    signals = walk[0].signals
+    force = signals["support.force_z_N"].to_numpy()
+    behind = signals["pelvis.reference_z_m"].to_numpy() - signals["pelvis.z_m"].to_numpy()
+    assert np.corrcoef(force, behind)[0, 1] > 0.3
+
+
+def test_summary_is_printed_with_the_support(walk, capsys):
+    from rich.console import Console
+
+    Console(width=120).print(summary_table(summarize(walk[0], "thesis")))
+    shown = capsys.readouterr().out
+    assert "EXTERNAL SUPPORT" in shown
+    assert "cost of transport" in shown
+
+
+# Runs that end before.
+
+
+@pytest.fixture(scope="module")
+def fall():
+    return simulate(thesis(5.0, balance__support__enabled="false"))
+
+
+def test_walker_without_support_falls_and_its_record_is_kept(fall):
+    time = fall.signals[TIME].to_numpy()
+    assert fall.end == "fell"
+    assert not fall.survived
+    assert 0.3 < time[-1] < 4.0
+    height = fall.signals["pelvis.z_m"].to_numpy()
+    assert height[-1] < 0.65 * height[0]
+    assert (height[:-10] > 0.6 * height[0]).all()
+
+
+def test_fall_is_summarised(fall):
+    summary = summarize(fall, "thesis")
+    assert summary["survived"] is False
+    assert summary["fall_time_s"] == pytest.approx(fall.signals[TIME][-1].as_py())
+    assert summary["external_support"] is False
+    summary_table(summary)
+
+
+def test_interrupt_ends_a_run_and_keeps_its_signals():
+    def interrupt(time: float) -> None:
+        if time >= 0.1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.getsignal(signal.SIGINT)
+    outcome = simulate(thesis(5.0), on_progress=interrupt)
+    time = outcome.signals[TIME].to_numpy()
+    assert outcome.end == "interrupted"
+    assert 0.1 <= time[-1] < 0.2
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch):
+    calculate = BodyObserver._calc_com
+
+    def run_away(self, context, output):
+        if context.get_time() >= 0.05:
+            self._plant.SetPositions(self._plant_context, np.full(self._plant.num_positions(), np.nan))
+        calculate(self, context, output)
+
+    monkeypatch.setattr(BodyObserver, "_calc_com", run_away)
+    outcome = simulate(thesis(1.0))
+    assert outcome.end.startswith("solver failed:")
+    assert len(outcome.end.splitlines()) == 1
+    assert outcome.signals[TIME].to_numpy()[-1] == pytest.approx(0.05, abs=0.006)
+    summary_table(summarize(outcome, "thesis"))
+
+
+def test_run_of_one_row_has_a_summary():
+    outcome = simulate(thesis(0.001))
+    assert outcome.survived
+    summary_table(summarize(outcome, "thesis"))
+
+
+def test_scenario_that_cannot_be_simulated_is_refused():
+    with pytest.raises(ParameterError):
+        simulate(thesis(1.0, gait__path__offset="0.03"))
+
+
+def test_cenic_is_what_integrates_when_asked_for():
+    outcome = simulate(thesis(0.1, simulation__integrator="cenic", simulation__time_step="0"))
+    assert outcome.survived
+    reference = simulate(thesis(0.1))
+    difference = matrix(outcome.signals, ["pelvis.x_m", "pelvis.z_m"]) - matrix(
+        reference.signals, ["pelvis.x_m", "pelvis.z_m"]
+    )
+    assert np.abs(difference).max() < 0.005
+
+
+def test_the_same_scenario_gives_the_same_record():
+    first, again = (simulate(thesis(0.1, start__joint_noise="0.01")) for _ in range(2))
+    assert first.signals.equals(again.signals)
