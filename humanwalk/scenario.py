@@ -12,6 +12,7 @@ Units are SI throughout: metres, seconds, radians, newtons, kilograms.
 import dataclasses
 import difflib
 import math
+import reprlib
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -35,8 +36,10 @@ from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
 Contact = Literal["point", "hydroelastic"]
 
-LARGEST_FILE = 1_000_000
+LARGEST_FILE = 100_000
 """Of a scenario [bytes]; a complete one has two thousand, and a parser may need thousands of times a file's size."""
+
+_BRIEF = reprlib.Repr(maxlevel=3, maxlist=4, maxdict=4, maxset=4, maxstring=60, maxlong=60, maxother=60)
 
 
 @dataclass(frozen=True)
@@ -339,7 +342,8 @@ def _build_scalar(kind: Any, value: Any, path: str) -> Any:
 
 def _shown(value: Any) -> str:
     try:
-        text = repr(value)
+        # Aliases of aliases may stand for more than memory holds: no more is looked at than is shown.
+        text = _BRIEF.repr(value)
     except ValueError:
         return "a number of too many digits"  # Python refuses to write it
     return text if len(text) <= 40 else text[:37] + "..."

@@ -54,6 +54,9 @@ def walk(
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
+    checkpoint: Annotated[
+        float, typer.Option(min=0.0, help="Seconds on the clock between two saves of an unfinished run.")
+    ] = 60.0,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
     from humanwalk.run.walk import follow_overrides, walk_and_write
@@ -67,7 +70,16 @@ def walk(
         )
     if duration is not None:
         overrides["duration"] = repr(duration)
-    run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)
+    run = walk_and_write(
+        scenario,
+        overrides,
+        output,
+        live=meshcat,
+        replay=replay,
+        plots=plots,
+        console=console,
+        checkpoint_period=checkpoint,
+    )
     end = run.summary["end"]
     if end == "interrupted":
         raise typer.Exit(INTERRUPTED)

@@ -1,6 +1,11 @@
 """A run on disk: one folder with the scenario, the signals, the summary, the replay and the plots."""
 
+import fcntl
 import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -30,6 +35,11 @@ SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
+
+SIGNALS_BYTES_PER_ROW = 2600
+REPLAY_BYTES_PER_FRAME = 11_000
+OTHER_BYTES = 20_000_000
+"""What a run needs on a disk, with a third to spare: 15 s have 3001 rows in 5.6 MB and 480 frames in 4.9 MB."""
 
 
 @dataclass(frozen=True)
@@ -133,9 +143,46 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
     number = 1
     while True:
         path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
-        if not path.exists():
-            return path, make_folder(path)
+        parents = make_folder(path.parent)
+        # Of two runs that start together only one makes the folder.
+        with suppress(FileExistsError):
+            path.mkdir()
+            return path, [path, *parents]
         number += 1
+
+
+@contextmanager
+def claimed(folder: Path) -> Iterator[None]:
+    """Within the block, no other run writes into the folder; the system ends the claim with the process.
+
+    Raises:
+        ParameterError: another run has claimed it, or has written into it meanwhile.
+    """
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if any(folder.iterdir()):
+            raise BlockingIOError
+        yield
+    except BlockingIOError:
+        raise ParameterError(
+            f"-o {folder}: another run writes into it; allowed: a folder for every run; choose another"
+        ) from None
+    finally:
+        os.close(handle)
+
+
+def require_room(folder: Path, scenario: Scenario) -> None:
+    """Raise ParameterError unless the disk has room for the run: better now than when it is simulated."""
+    rows = scenario.duration / scenario.recording.signal_period
+    frames = scenario.duration * scenario.recording.frame_rate
+    needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise ParameterError(
+            f"-o {folder}: {free / 1e6:.0f} MB are free on that disk; allowed: from about {needed / 1e6:.0f} MB on for "
+            f"{scenario.duration:g} s; make room, choose another folder, or record less (recording.signal_period)"
+        )
 
 
 def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
