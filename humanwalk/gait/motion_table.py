@@ -64,13 +64,19 @@ def read_motion_table(path: Path) -> MotionTable:
     if path.suffix.lower() not in FORMATS:
         raise ParameterError(f"{path}: unknown kind of recording; allowed: {', '.join(FORMATS)}; convert it to one")
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            # A pipe or a device may never end.
+            raise ParameterError(f"{path}: is no file; allowed: a recording that can be read")
         if path.stat().st_size > LARGEST_FILE:
             raise ParameterError(f"{path}: too large; allowed: up to {LARGEST_FILE // 10**6} MB; cut or thin it out")
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror or error}; allowed: a recording that can be read") from None
-    except UnicodeDecodeError:
-        raise ParameterError(f"{path}: is not text; allowed: {', '.join(FORMATS)}") from None
+    except ParameterError:
+        raise
+    except ValueError:
+        # Not UTF-8, or a path that holds a zero.
+        raise ParameterError(f"{str(path)!r}: is not text; allowed: {', '.join(FORMATS)}") from None
     lines = text.splitlines()
     if path.suffix.lower() == ".csv":
         return _parse(path, lines, 0, None, ",")
