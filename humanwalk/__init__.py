@@ -3,8 +3,56 @@
 A Subject is whose body it is, a Scenario what happens to it, a Diagram the systems wired together,
 a Run what came out. Units are SI and radians; frames and quantities are written in Drake's monogram
 notation (p_WC, X_PF, V_WF).
+
+For scripts and notebooks, what most of them need is here:
+
+    from humanwalk import load_scenario, simulate
+
+    outcome = simulate(load_scenario("thesis", {"gait.path.step_height": "0.12", "duration": "3"}))
+    run = outcome.save("runs/low")
+    run["RightLegTibiaMotion.torque"]  # with run.units; run.summary; run.plot("joint_torques")
 """
 
+from importlib import import_module
 from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from humanwalk.diagrams.playback import make_playback
+    from humanwalk.diagrams.walker import make_walker
+    from humanwalk.quantity import ParameterError
+    from humanwalk.run.folder import Run
+    from humanwalk.run.simulate import Outcome, simulate
+    from humanwalk.scenario import Scenario, load_scenario
 
 __version__ = version("humanwalk")
+
+_HOMES = {
+    "Outcome": "humanwalk.run.simulate",
+    "ParameterError": "humanwalk.quantity",
+    "Run": "humanwalk.run.folder",
+    "Scenario": "humanwalk.scenario",
+    "load_scenario": "humanwalk.scenario",
+    "make_playback": "humanwalk.diagrams.playback",
+    "make_walker": "humanwalk.diagrams.walker",
+    "simulate": "humanwalk.run.simulate",
+}
+
+__all__ = [
+    "Outcome",
+    "ParameterError",
+    "Run",
+    "Scenario",
+    "__version__",
+    "load_scenario",
+    "make_playback",
+    "make_walker",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import on first use: the command line's help should not wait for Drake."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'humanwalk' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -12,6 +12,7 @@ Units are SI throughout: metres, seconds, radians, newtons, kilograms.
 import dataclasses
 import difflib
 import math
+import reprlib
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -33,11 +34,17 @@ from humanwalk.control.step_planner import StepPlannerParameters
 from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.gait.recorded_motion import FollowParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
 Contact = Literal["point", "hydroelastic"]
 Controller = Literal["thesis", "balanced"]
+
+LARGEST_FILE = 100_000
+"""Of a scenario [bytes]; a complete one has two thousand, and a parser may need thousands of times a file's size."""
+
+_BRIEF = reprlib.Repr(maxlevel=3, maxlist=4, maxdict=4, maxset=4, maxstring=60, maxlong=60, maxother=60)
 
 
 @dataclass(frozen=True)
@@ -170,6 +177,7 @@ class Scenario:
     pushes: PushParameters = PushParameters()
     """Pushes against the body, with `controller: balanced`."""
 
+    follow: FollowParameters = FollowParameters()
     start: StartParameters = StartParameters()
     inverse_kinematics: InverseKinematicsParameters = InverseKinematicsParameters()
     actuators: ActuatorParameters = ActuatorParameters()
@@ -193,6 +201,11 @@ class Scenario:
         check(self)
         for name, angle in self.start.joint_angles.items():
             require_in_range(f"start.joint_angles.{name}", angle, "rad", -math.pi, math.pi)
+        if self.follow.file and (self.balance.foot_force.enabled or self.balance.upper_body.enabled):
+            raise ParameterError(
+                "follow.file: a recording is followed joint by joint, which balance.foot_force and balance.upper_body "
+                "would change; allowed: with balance.support or nothing; set their enabled: false"
+            )
         simulation = self.simulation
         if simulation.integrator == "cenic" and simulation.time_step != 0:
             raise ParameterError(
@@ -225,14 +238,24 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     """
     shipped = shipped_scenarios()
     path = shipped.get(str(name_or_path), Path(name_or_path))
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "is not text"
-        raise ParameterError(
-            f"scenario: {name_or_path}: {reason}; allowed: {', '.join(shipped)}, or the path of a YAML file"
-        ) from None
+    text = _read_text(path, f"scenario: {name_or_path}", f"{', '.join(shipped)}, or the path of a YAML file")
     return parse_scenario(text, overrides, name=path.name)
+
+
+def load_as[T](kind: type[T], path: Path) -> T:
+    """A YAML file as an instance of a dataclass of parameters, read as strictly as a scenario.
+
+    Raises:
+        ParameterError: it cannot be read, or a value cannot be used; one line.
+    """
+    text = _read_text(path, str(path), "a YAML file")
+    try:
+        parameters = _build(kind, _read_yaml(text, path.name), "")
+        check(parameters)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from None
+    assert isinstance(parameters, kind)
+    return parameters
 
 
 def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario") -> Scenario:
@@ -249,6 +272,21 @@ def dump_scenario(scenario: Scenario) -> str:
     """The complete scenario as YAML, every field written out; `parse_scenario` reads it back to an equal one."""
     text: str = yaml_dump(dataclasses.asdict(scenario))
     return text
+
+
+def _read_text(path: Path, name: str, allowed: str) -> str:
+    try:
+        # A pipe or a device may never end.
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise ParameterError(f"{name}: is no file; allowed: {allowed}")
+        if path.stat().st_size > LARGEST_FILE:
+            raise ParameterError(f"{name}: too large; allowed: up to {LARGEST_FILE // 1000} kB; is it a scenario?")
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        if isinstance(error, ParameterError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) else "is not text"
+        raise ParameterError(f"{name}: {reason}; allowed: {allowed}") from None
 
 
 def _read_yaml(text: str, name: str) -> dict[str, Any]:
@@ -354,7 +392,8 @@ def _build_scalar(kind: Any, value: Any, path: str) -> Any:
 
 def _shown(value: Any) -> str:
     try:
-        text = repr(value)
+        # Aliases of aliases may stand for more than memory holds: no more is looked at than is shown.
+        text = _BRIEF.repr(value)
     except ValueError:
         return "a number of too many digits"  # Python refuses to write it
     return text if len(text) <= 40 else text[:37] + "..."

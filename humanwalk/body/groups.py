@@ -20,3 +20,5 @@ SPINE_PITCH_JOINTS = _spine_joints((0.0, 1.0, 0.0))
 """Lumbar and thoracic joints that flex; positive forward."""
 SPINE_ROLL_JOINTS = _spine_joints((1.0, 0.0, 0.0))
 """Lumbar and thoracic joints that bend sideways; positive to the right."""
+SPINE_YAW_JOINTS = _spine_joints((0.0, 0.0, 1.0))
+"""Lumbar and thoracic joints that turn; positive to the left."""

@@ -6,28 +6,32 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
+from humanwalk.diagrams.followed import followed_motion
 from humanwalk.diagrams.ground import add_level_ground
 from humanwalk.diagrams.reference import add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable
 from humanwalk.scenario import Scenario
 from humanwalk.systems.playback_positions import PlaybackPositions
+from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 
 
 def make_playback(scenario: Scenario) -> Diagram:
     """Wire the walking reference of a scenario straight to the picture: what the walker would do if it could.
 
-    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_positions.
+    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_positions; with a recording
+    it stands in for gait, arms, inverse_kinematics and interpolator.
 
     Exported outputs:
         positions (49): plant positions q.
         desired_state (84): desired joint angles [rad], rates [rad/s].
-        ik_status (6): see InverseKinematicsSolver.
+        ik_status (6): see InverseKinematicsSolver; not with a recording.
         query_object: SceneGraph's, for a visualiser.
 
     Raises:
-        ParameterError: the scenario's gait cannot be reached.
+        ParameterError: the scenario's gait or recording cannot be followed.
     """
-    require_reachable(scenario)
+    if not scenario.follow.file:
+        require_reachable(scenario)
     builder = DiagramBuilder()
     scene_graph = builder.AddNamedSystem("scene_graph", SceneGraph())
     # The plant only says where its geometry is; it is no part of the diagram.
@@ -36,20 +40,28 @@ def make_playback(scenario: Scenario) -> Diagram:
     add_human(plant, scenario.subject)
     add_level_ground(plant, scenario.contact)
     plant.Finalize()
-
-    reference = add_walking_reference(builder, scenario)
-    solver = reference.inverse_kinematics
     positions = builder.AddNamedSystem("playback_positions", PlaybackPositions(plant))
     to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant))
-    connect_soles(builder, reference.gait, solver)
-    builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
-    builder.Connect(reference.gait.get_pelvis_pose_output_port(), positions.get_pelvis_pose_input_port())
-    builder.Connect(reference.interpolator.get_desired_state_output_port(), positions.get_desired_state_input_port())
+
+    if scenario.follow.file:
+        source = builder.AddNamedSystem("recording", RecordedPostureSource(followed_motion(scenario)))
+        pelvis_pose, desired_state = source.get_pelvis_pose_output_port(), source.get_desired_state_output_port()
+    else:
+        reference = add_walking_reference(builder, scenario)
+        solver = reference.inverse_kinematics
+        connect_soles(builder, reference.gait, solver)
+        builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
+        pelvis_pose, desired_state = (
+            reference.gait.get_pelvis_pose_output_port(),
+            reference.interpolator.get_desired_state_output_port(),
+        )
+        builder.ExportOutput(solver.get_status_output_port(), "ik_status")
+    builder.Connect(pelvis_pose, positions.get_pelvis_pose_input_port())
+    builder.Connect(desired_state, positions.get_desired_state_input_port())
     builder.Connect(positions.get_positions_output_port(), to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))
     builder.ExportOutput(positions.get_positions_output_port(), "positions")
-    builder.ExportOutput(reference.interpolator.get_desired_state_output_port(), "desired_state")
-    builder.ExportOutput(solver.get_status_output_port(), "ik_status")
+    builder.ExportOutput(desired_state, "desired_state")
     builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
     diagram = builder.Build()
     diagram.set_name("playback")

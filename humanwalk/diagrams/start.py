@@ -12,6 +12,7 @@ from humanwalk.control.inverse_kinematics import LegKinematics, pose_error, solv
 from humanwalk.control.joint_map import JointMap
 from humanwalk.diagrams.reference import standing_posture
 from humanwalk.gait.foot_cycle import FootCycle, minimum_offset
+from humanwalk.gait.recorded_motion import RecordedMotion
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 
@@ -30,8 +31,12 @@ REACH_TOLERANCE_RAD = 0.02
 """How far it may be turned from its path [rad]."""
 
 
-def start_positions(scenario: Scenario) -> Array:
+def start_positions(scenario: Scenario, motion: RecordedMotion | None = None) -> Array:
     """Positions q of the plant at time zero, shape (49,): standing as the gait asks, soles on the ground.
+
+    Args:
+        scenario: whose body, and which angles differ.
+        motion: a recording to start from instead of the gait.
 
     Raises:
         ParameterError: a start angle names no joint or is beyond its range.
@@ -40,7 +45,10 @@ def start_positions(scenario: Scenario) -> Array:
     context = plant.CreateDefaultContext()
     joints = JointMap.of(plant)
     angles = dict.fromkeys(joints.names, 0.0)
-    angles |= standing_posture(scenario)
+    if motion is None:
+        angles |= standing_posture(scenario)
+    else:
+        angles |= zip(joints.names, motion.joints(0.0)[0], strict=True)
     for name, angle in scenario.start.joint_angles.items():
         if name not in angles:
             near = difflib.get_close_matches(name, joints.names, n=1, cutoff=0.0)[0]
@@ -61,13 +69,16 @@ def start_positions(scenario: Scenario) -> Array:
 
     q = plant.GetPositions(context)
     q[joints.q] = theta
+    pelvis = plant.GetBodyByName("Pelvis").floating_positions_start()
+    if motion is not None:
+        X_WP = motion.pelvis(0.0).X_WP
+        q[pelvis : pelvis + 7] = [*X_WP.rotation().ToQuaternion().wxyz(), *X_WP.translation()]
     plant.SetPositions(context, q)
     lowest = min(
         (plant.GetBodyByName(sphere.body).EvalPoseInWorld(context) @ np.array(sphere.center))[2] - sphere.radius
         for sphere in contact_spheres(scenario.subject.skeleton)
     )
-    pelvis = plant.GetBodyByName("Pelvis")
-    q[pelvis.floating_positions_start() + 6] += scenario.start.pelvis_lift - lowest
+    q[pelvis + 6] += scenario.start.pelvis_lift - lowest
     return q
 
 

@@ -1,13 +1,16 @@
 """The thesis' walker as a Diagram: gait, inverse kinematics, PD actuators, plant, assumed balance, observers."""
 
+from dataclasses import dataclass
+
 from pydrake.multibody.tree import UniformGravityFieldElement
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.body import SIDES
 from humanwalk.body.plant import Subject
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.control.joint_map import base_first_mass_matrix
 from humanwalk.control.stability import round_down
+from humanwalk.diagrams.followed import followed_motion
 from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
 from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable, start_positions
@@ -19,6 +22,7 @@ from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.foot_force_observer import FootForceObserver
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
+from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 
 
@@ -26,7 +30,8 @@ def make_walker(scenario: Scenario) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, interpolator, actuators, body_observer,
-    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance.
+    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance. A
+    scenario that follows a recording has recording instead of gait, arms, inverse_kinematics and interpolator.
 
     Exported outputs, joints in actuator order:
         state (97): plant state [q; v].
@@ -35,9 +40,9 @@ def make_walker(scenario: Scenario) -> Diagram:
         torque (42): what every joint feels of its actuator [N m].
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
-        ik_status (6): see InverseKinematicsSolver.
+        ik_status (6): see InverseKinematicsSolver; not with a recording.
         pelvis_reference (3): where the pelvis should be in W [m].
-        phase (2), contact_schedule (2): see GaitSplineSource.
+        phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
         foot_forces (16): see FootForceObserver.
         support_wrench (6): torque [N m], force [N] of the assumed balance on the pelvis; with the support.
@@ -48,15 +53,11 @@ def make_walker(scenario: Scenario) -> Diagram:
         feedforward (42): torque added to every actuator's law [N m]; optional.
 
     Raises:
-        ParameterError: the scenario's start or gait cannot be reached, or its actuators would be unstable.
+        ParameterError: the scenario's start, gait or recording cannot be followed, or its actuators would be unstable.
     """
-    require_reachable(scenario)
     builder = DiagramBuilder()
     human = add_human_plant(builder, scenario)
     plant = human.plant
-    plant.SetDefaultPositions(start_positions(scenario))
-    reference = add_walking_reference(builder, scenario)
-    gait, solver = reference.gait, reference.inverse_kinematics
     bank = builder.AddNamedSystem(
         "actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law, human.effort_limits)
     )
@@ -65,30 +66,11 @@ def make_walker(scenario: Scenario) -> Diagram:
     builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
     builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
 
-    sole_targets: SoleTargets = gait
-    if scenario.balance.foot_force.enabled:
-        sole_targets = level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
-        builder.ExportOutput(level_1.get_shift_output_port(), "foot_shift")
-    connect_soles(builder, sole_targets, solver)
-
-    posture = reference.arms.get_posture_output_port()
-    if scenario.balance.upper_body.enabled:
-        level_2 = builder.AddNamedSystem(
-            "upper_body_balance",
-            UpperBodyBalance(
-                human.joints.names,
-                scenario.balance.upper_body,
-                scenario.simulation.control_period,
-            ),
-        )
-        builder.Connect(posture, level_2.get_posture_input_port())
-        builder.Connect(body.get_soles_output_port(), level_2.get_soles_input_port())
-        builder.Connect(body.get_com_output_port(), level_2.get_com_input_port())
-        builder.ExportOutput(level_2.get_alpha_output_port(), "alpha")
-        posture = level_2.get_balanced_posture_output_port()
-    builder.Connect(posture, solver.get_posture_input_port())
-
-    builder.Connect(reference.interpolator.get_desired_state_output_port(), bank.get_desired_state_input_port())
+    if scenario.follow.file:
+        reference = _add_recording(builder, scenario, human)
+    else:
+        reference = _add_gait(builder, scenario, human, body, feet)
+    builder.Connect(reference.desired_state, bank.get_desired_state_input_port())
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
@@ -105,8 +87,8 @@ def make_walker(scenario: Scenario) -> Diagram:
         )
         _require_stable_support(human, parameters)
         support = builder.AddNamedSystem("support", BalanceSupport(plant, parameters))
-        builder.Connect(gait.get_pelvis_pose_output_port(), support.get_reference_pose_input_port())
-        builder.Connect(gait.get_pelvis_velocity_output_port(), support.get_reference_velocity_input_port())
+        builder.Connect(reference.pelvis_pose, support.get_reference_pose_input_port())
+        builder.Connect(reference.pelvis_velocity, support.get_reference_velocity_input_port())
         builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
         builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
         builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
@@ -118,11 +100,8 @@ def make_walker(scenario: Scenario) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
-        (reference.interpolator.get_desired_state_output_port(), "desired_state"),
-        (solver.get_status_output_port(), "ik_status"),
-        (gait.get_pelvis_position_output_port(), "pelvis_reference"),
-        (gait.get_phase_output_port(), "phase"),
-        (gait.get_contact_schedule_output_port(), "contact_schedule"),
+        (reference.desired_state, "desired_state"),
+        *((port, name) for name, port in reference.exports.items()),
         (body.get_soles_output_port(), "soles"),
         (body.get_com_output_port(), "com"),
         (feet.get_foot_forces_output_port(), "foot_forces"),
@@ -131,6 +110,73 @@ def make_walker(scenario: Scenario) -> Diagram:
     diagram = builder.Build()
     diagram.set_name("walker")
     return diagram
+
+
+@dataclass(frozen=True)
+class _Reference:
+    """Ports of what the walker is to do."""
+
+    desired_state: OutputPort
+    pelvis_pose: OutputPort
+    pelvis_velocity: OutputPort
+    exports: dict[str, OutputPort]
+
+
+def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant) -> _Reference:
+    """Add the recording that the scenario follows; the plant starts where it does."""
+    motion = followed_motion(scenario)
+    human.plant.SetDefaultPositions(start_positions(scenario, motion))
+    source = builder.AddNamedSystem("recording", RecordedPostureSource(motion))
+    return _Reference(
+        source.get_desired_state_output_port(),
+        source.get_pelvis_pose_output_port(),
+        source.get_pelvis_velocity_output_port(),
+        {"pelvis_reference": source.get_pelvis_position_output_port()},
+    )
+
+
+def _add_gait(
+    builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, body: BodyObserver, feet: FootForceObserver
+) -> _Reference:
+    """Add gait, arms, inverse kinematics and the balance levels between them; the plant starts standing."""
+    require_reachable(scenario)
+    human.plant.SetDefaultPositions(start_positions(scenario))
+    walking = add_walking_reference(builder, scenario)
+    gait, solver = walking.gait, walking.inverse_kinematics
+    exports = {
+        "ik_status": solver.get_status_output_port(),
+        "pelvis_reference": gait.get_pelvis_position_output_port(),
+        "phase": gait.get_phase_output_port(),
+        "contact_schedule": gait.get_contact_schedule_output_port(),
+    }
+    sole_targets: SoleTargets = gait
+    if scenario.balance.foot_force.enabled:
+        sole_targets = level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        exports["foot_shift"] = level_1.get_shift_output_port()
+    connect_soles(builder, sole_targets, solver)
+
+    posture = walking.arms.get_posture_output_port()
+    if scenario.balance.upper_body.enabled:
+        level_2 = builder.AddNamedSystem(
+            "upper_body_balance",
+            UpperBodyBalance(
+                human.joints.names,
+                scenario.balance.upper_body,
+                scenario.simulation.control_period,
+            ),
+        )
+        builder.Connect(posture, level_2.get_posture_input_port())
+        builder.Connect(body.get_soles_output_port(), level_2.get_soles_input_port())
+        builder.Connect(body.get_com_output_port(), level_2.get_com_input_port())
+        exports["alpha"] = level_2.get_alpha_output_port()
+        posture = level_2.get_balanced_posture_output_port()
+    builder.Connect(posture, solver.get_posture_input_port())
+    return _Reference(
+        walking.interpolator.get_desired_state_output_port(),
+        gait.get_pelvis_pose_output_port(),
+        gait.get_pelvis_velocity_output_port(),
+        exports,
+    )
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:

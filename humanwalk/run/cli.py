@@ -24,6 +24,7 @@ console = Console(stderr=True, markup=False)
 
 BAD_INPUT = 2
 FELL = 1
+DIFFERS = 1
 INTERRUPTED = 130
 
 ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
@@ -52,20 +53,44 @@ def walk(
     look: Annotated[
         str | None, typer.Option(help="person or bones, instead of the scenario's: the same walk, another look.")
     ] = None,
+    follow: Annotated[
+        Path | None, typer.Option(help="Follow the joint angles of a recording (.mot, .sto, .csv) instead of the gait.")
+    ] = None,
+    mapping: Annotated[
+        Path | None, typer.Option(help="YAML file: which column of the recording is which joint, in what unit.")
+    ] = None,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
+    checkpoint: Annotated[
+        float, typer.Option(min=0.0, help="Seconds on the clock between two saves of an unfinished run.")
+    ] = 60.0,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
-    from humanwalk.run.walk import walk_and_write
+    from humanwalk.run.walk import follow_overrides, walk_and_write
 
     overrides = _overrides(set_)
+    if follow is not None:
+        overrides |= follow_overrides(follow, mapping)
+    elif mapping is not None:
+        raise ParameterError(
+            f"--mapping {mapping}: is for a recording; allowed: with --follow FILE; name the recording"
+        )
     if duration is not None:
         overrides["duration"] = repr(duration)
     if look is not None:
         _require_look(look)
         overrides["subject.look"] = look
-    run = walk_and_write(scenario, overrides, output, live=meshcat, replay=replay, plots=plots, console=console)
+    run = walk_and_write(
+        scenario,
+        overrides,
+        output,
+        live=meshcat,
+        replay=replay,
+        plots=plots,
+        console=console,
+        checkpoint_period=checkpoint,
+    )
     end = run.summary["end"]
     if end == "interrupted":
         raise typer.Exit(INTERRUPTED)
@@ -155,6 +180,41 @@ def plot(
         console.print(f"{path}", soft_wrap=True)
     if not written:
         console.print(f"{run}: nothing to draw of what was asked for", soft_wrap=True)
+
+
+@app.command(
+    epilog="Examples: humanwalk export runs/thesis --to opensim  |  humanwalk export runs/thesis --to c3d -o lab"
+)
+def export(
+    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    to: Annotated[str, typer.Option("--to", help="opensim, c3d, csv or mat.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder to write into. Default: the format's name in the run's."),
+    ] = None,
+) -> None:
+    """Write a run for another program: OpenSim, motion-capture software, a spreadsheet, MATLAB."""
+    from humanwalk.run.export import export_run
+    from humanwalk.run.folder import Run
+
+    for path in export_run(Run.open(run), to, output):
+        console.print(f"{path}", soft_wrap=True)
+
+
+@app.command(epilog="Example: humanwalk reproduce runs/thesis")
+def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
+    """Simulate a run again, and say whether its bits, or else its measures, come out the same."""
+    from humanwalk.run.folder import Run
+    from humanwalk.run.reproduce import reproduce as repeat
+
+    opened = Run.open(run)
+    with console.status(f"simulating {opened.time[-1]:g} s again"):
+        result = repeat(opened)
+    for note in result.notes:
+        console.print(note, soft_wrap=True)
+    console.print(f"{run}: {result.verdict}", soft_wrap=True)
+    if not result.measures_agree:
+        raise typer.Exit(DIFFERS)
 
 
 @app.command()

@@ -1,25 +1,45 @@
 """A run on disk: one folder with the scenario, the signals, the summary, the replay and the plots."""
 
+import fcntl
 import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder, write_text, write_whole
-from humanwalk.run.measures import summarize
+from humanwalk.run.gait_measures import gait_measures
+from humanwalk.run.measures import steady_from, summarize
+from humanwalk.run.provenance import provenance
+from humanwalk.run.signals import TIME, column_of, unit_of
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = npt.NDArray[np.float64]
 
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
+
+SIGNALS_BYTES_PER_ROW = 2600
+REPLAY_BYTES_PER_FRAME = 11_000
+OTHER_BYTES = 20_000_000
+"""What a run needs on a disk, with a third to spare: 15 s have 3001 rows in 5.6 MB and 480 frames in 4.9 MB."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +49,13 @@ class Run:
     path: Path
 
     @staticmethod
-    def open(path: Path) -> "Run":
+    def open(path: Path | str) -> "Run":
         """The run in a folder.
 
         Raises:
             ParameterError: the folder holds no run.
         """
+        path = Path(path)
         for name in (SCENARIO, SIGNALS, SUMMARY):
             if not (path / name).is_file():
                 raise ParameterError(
@@ -58,6 +79,40 @@ class Run:
         """The measures; see `humanwalk.run.measures.summarize`."""
         summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
         return summary
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every signal, "" for a pure number."""
+        return {name: unit_of(name) for name in self.signals.column_names}
+
+    @property
+    def time(self) -> Array:
+        """When the signals were sampled [s], shape (rows,)."""
+        return self[TIME]
+
+    def __getitem__(self, name: str) -> Array:
+        """A signal, shape (rows,), by its column's name with or without the unit: run["com.x"].
+
+        Raises:
+            ParameterError: there is none of that name.
+        """
+        values: Array = self.signals[column_of(self.signals.column_names, name)].to_numpy()
+        return values
+
+    def plot(self, name: str) -> "Figure":
+        """A plot of the run by its name, as a matplotlib figure; a notebook shows it.
+
+        Raises:
+            ParameterError: no such plot, or the run has nothing to draw for it.
+        """
+        # Plots draw runs.
+        from humanwalk.run.plots import PLOTS as DRAWINGS
+
+        figure = DRAWINGS[name](self) if name in DRAWINGS else None
+        if figure is None:
+            allowed = ", ".join(DRAWINGS)
+            raise ParameterError(f"{name}: no such plot, or nothing to draw; allowed: {allowed}; choose another")
+        return figure
 
     @property
     def replay(self) -> Path:
@@ -98,15 +153,63 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
     number = 1
     while True:
         path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
-        if not path.exists():
-            return path, make_folder(path)
+        parents = make_folder(path.parent)
+        # Of two runs that start together only one makes the folder.
+        with suppress(FileExistsError):
+            path.mkdir()
+            return path, [path, *parents]
         number += 1
 
 
-def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
-    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all."""
+@contextmanager
+def claimed(folder: Path) -> Iterator[None]:
+    """Within the block, no other run writes into the folder; the system ends the claim with the process.
+
+    Raises:
+        ParameterError: another run has claimed it, or has written into it meanwhile.
+    """
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if any(folder.iterdir()):
+            raise BlockingIOError
+        yield
+    except BlockingIOError:
+        raise ParameterError(
+            f"-o {folder}: another run writes into it; allowed: a folder for every run; choose another"
+        ) from None
+    finally:
+        os.close(handle)
+
+
+def require_room(folder: Path, scenario: Scenario) -> None:
+    """Raise ParameterError unless the disk has room for the run: better now than when it is simulated."""
+    rows = scenario.duration / scenario.recording.signal_period
+    frames = scenario.duration * scenario.recording.frame_rate
+    needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise ParameterError(
+            f"-o {folder}: {free / 1e6:.0f} MB are free on that disk; allowed: from about {needed / 1e6:.0f} MB on for "
+            f"{scenario.duration:g} s; make room, choose another folder, or record less (recording.signal_period)"
+        )
+
+
+def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
+    """Everything that summary.json says of a simulation."""
     summary = summarize(outcome, scenario_name)
-    metadata = {b"humanwalk": json.dumps({key: summary[key] for key in ("scenario", "seed", "versions")}).encode()}
+    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario))
+    summary["provenance"] = provenance(outcome.scenario, outcome.signals)
+    return summary
+
+
+def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
+    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all.
+
+    The summary comes last: a folder that has one is a complete run.
+    """
+    summary = measure(outcome, scenario_name)
+    metadata = {b"humanwalk": json.dumps({"scenario": scenario_name} | summary["provenance"]).encode()}
     signals = outcome.signals.replace_schema_metadata(metadata)
     write_text(path / SCENARIO, dump_scenario(outcome.scenario))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))

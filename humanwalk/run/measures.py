@@ -53,7 +53,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "steady_from_s": steady_from(scenario),
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
-        "commanded_speed_m_s": scenario.commanded_speed,
+        "commanded_speed_m_s": None if scenario.follow.file else scenario.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
         "foot_lift_m": {side.lower(): foot_lift(signals, side) for side in SIDES},
         "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
@@ -77,7 +77,12 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
 
 
 def steady_from(scenario: Scenario) -> float:
-    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed."""
+    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed.
+
+    A recording is taken to be steady from when it runs at full speed.
+    """
+    if scenario.follow.file:
+        return scenario.follow.ease_in
     if scenario.controller == "balanced":
         command = scenario.balanced.command
         first = command.points[0]
@@ -147,12 +152,6 @@ def pelvis_tracking(signals: pa.Table, rows: npt.NDArray[np.bool_]) -> float | N
     return float(np.sqrt(((actual - wanted)[rows] ** 2).sum(axis=1).mean()))
 
 
-def ik_converged_share(signals: pa.Table) -> float | None:
-    """Share of the solutions of the inverse kinematics that converged; null for a walk that has none."""
-    columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
-    return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
-
-
 def qp_failures(signals: pa.Table) -> int | None:
     """How often the whole-body program had no solution; null for a walk that has none."""
     if "qp.failures" not in signals.column_names:
@@ -167,6 +166,12 @@ def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -
         return None
     error = signals[f"{joint}.desired_angle_rad"].to_numpy() - signals[f"{joint}.angle_rad"].to_numpy()
     return float(np.sqrt((error[rows] ** 2).mean()))
+
+
+def ik_converged_share(signals: pa.Table) -> float | None:
+    """Share of the samples at which a leg's inverse kinematics had converged; null where none was solved."""
+    columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
+    return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
 
 
 def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:

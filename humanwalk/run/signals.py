@@ -1,5 +1,7 @@
 """What a run records: one row per signal period, one named column with a unit per number."""
 
+import difflib
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +13,7 @@ from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 
 from humanwalk.body import SIDES
 from humanwalk.control.joint_map import JointMap
+from humanwalk.quantity import ParameterError
 
 Array = npt.NDArray[np.float64]
 
@@ -103,6 +106,32 @@ class Recorder:
         for port, log in logs.items():
             data |= zip(self.columns[port], log.data()[:, :rows].copy(), strict=True)
         return pa.table(data)
+
+
+UNITS = {"N_m": "N m", "rad_s": "rad/s", "m_s": "m/s", "rad": "rad", "m": "m", "N": "N", "s": "s"}
+"""Units by how a column's name ends."""
+_UNIT = re.compile(f"_({'|'.join(UNITS)})$")
+
+
+def unit_of(column: str) -> str:
+    """Unit of a column, "" for a pure number: "N m" of RightLegTibiaMotion.torque_N_m."""
+    found = _UNIT.search(column)
+    return UNITS[found[1]] if found else ""
+
+
+def column_of(columns: Sequence[str], name: str) -> str:
+    """The column of a name with or without its unit.
+
+    Raises:
+        ParameterError: there is none.
+    """
+    if name in columns:
+        return name
+    for column in columns:
+        if _UNIT.sub("", column) == name:
+            return column
+    near = difflib.get_close_matches(name, columns, n=3, cutoff=0.5)
+    raise ParameterError(f"{name}: no such signal; allowed: the {len(columns)} of the run; near: {', '.join(near)}")
 
 
 def matrix(signals: pa.Table, columns: Sequence[str]) -> Array:

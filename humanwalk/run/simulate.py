@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pyarrow as pa
 from pydrake.geometry import Meshcat
@@ -12,10 +14,14 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.control.joint_map import JointMap
 from humanwalk.diagrams.choose import make_diagram
+from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.replay import add_visualizer
 from humanwalk.run.signals import Recorder
 from humanwalk.scenario import Scenario
+
+if TYPE_CHECKING:
+    from humanwalk.run.folder import Run
 
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
@@ -28,7 +34,8 @@ class Outcome:
     Attributes:
         scenario: what was simulated.
         signals: the record, see `humanwalk.run.signals`.
-        end: "completed", or why it ended before: "fell", "not a number", "solver failed: ...", "interrupted".
+        end: "completed", or why it ended before: "fell", "not a number", "solver failed: ...", "interrupted";
+            "unfinished" at a checkpoint.
         wall_time: time that the simulation took on the clock [s], without building the diagram.
     """
 
@@ -42,12 +49,27 @@ class Outcome:
         """Whether the walker was up for the whole duration."""
         return self.end == "completed"
 
+    def save(self, path: Path | str, name: str = "script") -> "Run":
+        """Write scenario, signals and summary into a new or empty folder, and return the run.
+
+        Raises:
+            ParameterError: the folder holds files already, or cannot be written.
+        """
+        # A run folder holds what a simulation returns.
+        from humanwalk.run.folder import new_run_folder, write_run
+
+        folder = Path(path)
+        new_run_folder(folder, name)
+        return write_run(folder, self, name)
+
 
 def simulate(
     scenario: Scenario,
     meshcat: Meshcat | None = None,
     on_progress: Callable[[float], None] | None = None,
     realtime_rate: float = 0.0,
+    on_checkpoint: Callable[[Outcome], None] | None = None,
+    checkpoint_period: float = 60.0,
 ) -> Outcome:
     """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
 
@@ -56,9 +78,10 @@ def simulate(
         meshcat: shows and records the motion; the caller publishes the recording.
         on_progress: called with the simulated time [s] every 10 ms of it.
         realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
+        on_checkpoint: called with what there is so far every `checkpoint_period` seconds on the clock.
 
     Raises:
-        ParameterError: the scenario cannot be simulated, with a mend.
+        ParameterError: the scenario cannot be simulated, with a mend, or failed before there was anything to record.
     """
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_diagram(scenario))
@@ -86,19 +109,32 @@ def simulate(
             simulator,
         )
     simulator.set_target_realtime_rate(realtime_rate)
-    monitor = Monitor(plant)
-    if on_progress is not None:
-        monitor.on_progress = on_progress
-    simulator.set_monitor(monitor)
+    started = last_checkpoint = time.perf_counter()
 
-    started = time.perf_counter()
+    def look(simulated: float) -> None:
+        nonlocal last_checkpoint
+        if on_progress is not None:
+            on_progress(simulated)
+        now = time.perf_counter()
+        if on_checkpoint is not None and now - last_checkpoint >= checkpoint_period:
+            on_checkpoint(Outcome(scenario, recorder.table(simulator.get_context()), "unfinished", now - started))
+            last_checkpoint = time.perf_counter()
+
+    monitor = Monitor(plant, on_progress=look)
+    simulator.set_monitor(monitor)
     with monitor.stop_on_interrupt():
         try:
             simulator.Initialize()
             simulator.AdvanceTo(scenario.duration)
             end = monitor.reason or "completed"
-        except (RuntimeError, SystemExit) as error:
-            # Drake's solvers throw, and its checks exit, when the state has run away; the record until then is kept.
-            end = monitor.reason or f"solver failed: {str(error).splitlines()[0]}"
+        except ParameterError:
+            raise
+        except (RuntimeError, SystemExit, ValueError, ArithmeticError) as error:
+            # Drake's solvers throw, its checks exit and NumPy's refuse when the state has run away; the record until
+            # then is kept.
+            end = monitor.reason or f"solver failed: {(str(error) or repr(error)).splitlines()[0]}"
     wall_time = time.perf_counter() - started
-    return Outcome(scenario, recorder.table(simulator.get_context()), end, wall_time)
+    signals = recorder.table(simulator.get_context())
+    if signals.num_rows == 0:
+        raise ParameterError(f"simulation: nothing to record, it ended at its start: {end}; change start or actuators")
+    return Outcome(scenario, signals, end, wall_time)

@@ -1,5 +1,8 @@
 """One walk from the command line: simulate with a progress bar, write the run folder, print the summary."""
 
+import json
+import shutil
+import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -9,8 +12,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
+from humanwalk.gait.motion_table import read_motion_table
+from humanwalk.quantity import ParameterError
 from humanwalk.run.files import write_text
-from humanwalk.run.folder import REPLAY, Run, new_run_folder, write_run
+from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room, write_run
 from humanwalk.run.plots import write_plots
 from humanwalk.run.replay import make_meshcat, static_page
 from humanwalk.run.simulate import Outcome, simulate
@@ -26,6 +31,7 @@ def walk_and_write(
     replay: bool,
     plots: bool,
     console: Console,
+    checkpoint_period: float = 60.0,
 ) -> Run:
     """Simulate a scenario and write everything that comes out of it.
 
@@ -36,25 +42,29 @@ def walk_and_write(
         live: watch in the browser while it is simulated.
         replay, plots: whether to write them.
         console: where progress and summary go.
+        checkpoint_period: seconds on the clock after which an unfinished run is written, again and again; a program
+            that is killed leaves the last of them.
 
     Raises:
         ParameterError: bad input; nothing is left behind half-written.
     """
     loaded = load_scenario(scenario, overrides)
-    name = scenario if scenario in shipped_scenarios() else Path(scenario).stem
+    name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
     meshcat = make_meshcat() if live or replay else None
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
     path, made = new_run_folder(output, name)
     try:
-        outcome = _simulate_with_progress(loaded, name, meshcat, live, console)
+        require_room(path, loaded)
+        with claimed(path):
+            outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
+            run = _write_or_rescue(path, outcome, name)
     except BaseException:
         # Nothing was recorded: an empty folder would only be in the way of the next attempt.
         with suppress(OSError):
             for folder in made:
                 folder.rmdir()
         raise
-    run = write_run(path, outcome, name)
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
             write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}"))
@@ -67,7 +77,52 @@ def walk_and_write(
     return run
 
 
-def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: bool, console: Console) -> Outcome:
+def follow_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
+    """Overrides for a scenario that follows a recording to its end.
+
+    Raises:
+        ParameterError: the recording cannot be read.
+    """
+    time = read_motion_table(recording).time
+    # JSON is YAML, and quotes whatever a path may hold.
+    overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
+    if mapping is not None:
+        overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
+    return overrides
+
+
+def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
+    """Write the run into its folder, or, where that fails, into one for temporary files: it took long to simulate.
+
+    Raises:
+        ParameterError: it could not be written to `path`; says where it is.
+    """
+    try:
+        return write_run(path, outcome, name)
+    except ParameterError as error:
+        rescue = Path(tempfile.mkdtemp(prefix=f"humanwalk-{name}-"))
+        try:
+            write_run(rescue, outcome, name)
+        except ParameterError:
+            shutil.rmtree(rescue, ignore_errors=True)
+            raise error from None
+        raise ParameterError(f"{error}; the run is saved in {rescue}") from None
+
+
+def _simulate_with_progress(
+    scenario: Scenario,
+    name: str,
+    path: Path,
+    meshcat: Any,
+    live: bool,
+    checkpoint_period: float,
+    console: Console,
+) -> Outcome:
+    def checkpoint(so_far: Outcome) -> None:
+        # A disk that is full now may have room at the end.
+        with suppress(ParameterError):
+            write_run(path, so_far, name)
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -86,7 +141,14 @@ def _simulate_with_progress(scenario: Scenario, name: str, meshcat: Any, live: b
         progress.update(task, completed=time)
 
     try:
-        return simulate(scenario, meshcat, on_progress=show, realtime_rate=1.0 if live else 0.0)
+        return simulate(
+            scenario,
+            meshcat,
+            on_progress=show,
+            realtime_rate=1.0 if live else 0.0,
+            on_checkpoint=checkpoint,
+            checkpoint_period=checkpoint_period,
+        )
     finally:
         if progress.live.is_started:
             progress.stop()
@@ -102,8 +164,9 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
         table.add_row(what, "-" if value is None else format(per_unit * value, form), unit)
 
+    commanded = summary["commanded_speed_m_s"]
     row(
-        "mean speed (commanded " + format(summary["commanded_speed_m_s"], "g") + ")",
+        "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})",
         summary["mean_speed_m_s"],
         ".3f",
         "m/s",

@@ -1,0 +1,101 @@
+"""Markers on anatomical landmarks, as a motion-capture laboratory would stick them on.
+
+The 39 of the Plug-in-Gait full-body model have its names (first letter R or L for the side); the medial ones of knee,
+ankle and elbow, the heads of the first and fifth metatarsals and the tip of the shoe, which Plug-in-Gait has not, are
+named in its manner. Positions are on the skin of the reference human (`humanwalk.body.visuals`) or at the level of its
+joint centres, and grow with stature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from humanwalk.body.anatomy import REFERENCE_STATURE, human
+from humanwalk.body.skeleton import Skeleton, Vector3
+
+
+@dataclass(frozen=True)
+class Marker:
+    """A point on a body.
+
+    Attributes:
+        name: Plug-in-Gait name, e.g. `RASI`, or one in its manner.
+        body: Name of the segment it is stuck to.
+        position: In the body frame, p_BoM_B [m].
+        landmark: What it is stuck to.
+        plug_in_gait: Whether Plug-in-Gait has it.
+    """
+
+    name: str
+    body: str
+    position: Vector3
+    landmark: str
+    plug_in_gait: bool = True
+
+    def mirrored(self) -> Marker:
+        """The left twin of a right marker."""
+        x, y, z = self.position
+        return Marker(
+            f"L{self.name[1:]}", self.body.replace("Right", "Left"), (x, -y, z), self.landmark, self.plug_in_gait
+        )
+
+    def scaled(self, factor: float) -> Marker:
+        """The same marker on a body with every length multiplied by `factor`."""
+        x, y, z = self.position
+        return Marker(self.name, self.body, (x * factor, y * factor, z * factor), self.landmark, self.plug_in_gait)
+
+
+def markers(skeleton: Skeleton) -> tuple[Marker, ...]:
+    """Every marker of a body, head first, right before left."""
+    scale = skeleton.stature / REFERENCE_STATURE
+    paired = [side for marker in _right() for side in (marker, marker.mirrored())]
+    return tuple(marker.scaled(scale) for marker in (*paired, *_middle()))
+
+
+def _middle() -> tuple[Marker, ...]:
+    return (
+        Marker("C7", "Thoracic_1_3", (-0.066, 0.0, 0.062), "spinous process of the 7th cervical vertebra"),
+        Marker("T10", "Thoracic_10_12", (-0.110, 0.0, 0.020), "spinous process of the 10th thoracic vertebra"),
+        Marker("CLAV", "Thoracic_1_3", (0.070, 0.0, 0.040), "jugular notch, where the clavicles meet the sternum"),
+        Marker("STRN", "Ribs", (0.111, 0.0, -0.020), "xiphoid process of the sternum"),
+        Marker("RBAK", "Ribs", (-0.100, -0.080, 0.080), "right shoulder blade; has no left twin, to tell the sides"),
+    )
+
+
+def _right() -> tuple[Marker, ...]:
+    reference = human()
+    knee, ankle, elbow, wrist = (
+        reference.joint(f"Right{name}Motion").origin for name in ("LegTibia", "LegAnkle", "ArmElbow", "ArmWrist")
+    )
+    thigh, shank, hind_foot = "RightLeg_Femur_Thigh", "RightLeg_Tibia", "RightLeg_Ankle"
+    mid_foot, toes = "RightLeg_FootMiddle", "RightLeg_FootToes"
+    upper_arm, forearm, hand = "RightArm_Humor_Upper_Arm", "RightArm_UlnaRadius_Forearm", "RightArm_Hand"
+    return (
+        Marker("RFHD", "Head", (0.070, -0.055, 0.048), "temple"),
+        Marker("RBHD", "Head", (-0.054, -0.055, 0.048), "back of the head, level with the temple"),
+        Marker("RSHO", "Scapula", (-0.004, -0.215, 0.035), "acromion"),
+        Marker("RUPA", upper_arm, (0.004, -0.040, -0.150), "outer side of the upper arm"),
+        Marker("RELB", upper_arm, _beside(elbow, y=-0.0385), "lateral epicondyle of the humerus"),
+        Marker("RELM", upper_arm, _beside(elbow, y=0.0385), "medial epicondyle of the humerus", False),
+        Marker("RFRM", forearm, (0.001, -0.041, -0.075), "outer side of the forearm"),
+        Marker("RWRA", forearm, _beside(wrist, x=0.028), "wrist, thumb side"),
+        Marker("RWRB", forearm, _beside(wrist, x=-0.028), "wrist, little finger's side"),
+        Marker("RFIN", hand, (0.027, -0.0072, -0.088), "back of the hand, head of the second metacarpal"),
+        Marker("RASI", "Pelvis", (0.080, -0.105, 0.085), "anterior superior iliac spine"),
+        Marker("RPSI", "Pelvis", (-0.105, -0.045, 0.085), "posterior superior iliac spine"),
+        Marker("RTHI", thigh, (0.003, -0.059, -0.280), "outer side of the thigh, lower third"),
+        Marker("RKNE", thigh, _beside(knee, y=-0.056), "lateral epicondyle of the femur"),
+        Marker("RKNM", thigh, _beside(knee, y=0.056), "medial epicondyle of the femur", False),
+        Marker("RTIB", shank, (-0.005, -0.050, -0.210), "outer side of the shank"),
+        Marker("RANK", shank, _beside(ankle, y=-0.036), "lateral malleolus"),
+        Marker("RANM", shank, _beside(ankle, y=0.036), "medial malleolus", False),
+        Marker("RHEE", hind_foot, (-0.053, 0.0, -0.021), "back of the heel"),
+        Marker("RTOE", mid_foot, (0.070, 0.0, 0.0105), "head of the second metatarsal"),
+        Marker("RMT1", mid_foot, (0.070, 0.045, -0.012), "head of the first metatarsal", False),
+        Marker("RMT5", mid_foot, (0.060, -0.045, -0.012), "head of the fifth metatarsal", False),
+        Marker("RTIP", toes, (0.0595, 0.0, 0.0015), "tip of the shoe", False),
+    )
+
+
+def _beside(point: Vector3, x: float = 0.0, y: float = 0.0) -> Vector3:
+    return (point[0] + x, point[1] + y, point[2])

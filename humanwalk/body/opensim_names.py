@@ -1,0 +1,51 @@
+"""The joints under the names of OpenSim's coordinates, and OpenSim's axes.
+
+Names and signs are those of the full-body model of Rajagopal et al. (2016): knee flexion is positive (in the older
+gait2392 it is negative). Every joint that the model has not keeps its own name. OpenSim's ground is x forward, y up,
+z right.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from humanwalk.body.groups import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS, SPINE_YAW_JOINTS
+from humanwalk.body.skeleton import SIDES
+
+Array = npt.NDArray[np.float64]
+
+_RIGHT_AND_LEFT = {
+    "LegFemurMotion": ("hip_flexion", 1.0),
+    "LegFemurSideMotion": ("hip_adduction", -1.0),
+    "LegFemurTwistMotion": ("hip_rotation", 1.0),
+    "LegTibiaMotion": ("knee_angle", 1.0),
+    "LegAnkleMotion": ("ankle_angle", 1.0),
+    "LegAnkleRollMotion": ("subtalar_angle", 1.0),
+    "LegFootToesMotion": ("mtp_angle", 1.0),
+    "ArmShoulderMotion": ("arm_flex", 1.0),
+    "ArmShoulderSideMotion": ("arm_add", -1.0),
+    "ArmShoulderTwistMotion": ("arm_rot", 1.0),
+    "ArmElbowMotion": ("elbow_flex", 1.0),
+    "ArmWristMotion": ("wrist_flex", 1.0),
+}
+
+COORDINATES: dict[str, tuple[str, float]] = {
+    f"{side}{motion}": (f"{coordinate}_{side[0].lower()}", sign)
+    for side in SIDES
+    for motion, (coordinate, sign) in _RIGHT_AND_LEFT.items()
+}
+"""OpenSim's coordinate of a joint, and the factor from the joint's angle to it."""
+
+SPINE_COORDINATES: dict[str, tuple[tuple[str, ...], float]] = {
+    "lumbar_extension": (SPINE_PITCH_JOINTS, -1.0),
+    "lumbar_bending": (SPINE_ROLL_JOINTS, 1.0),
+    "lumbar_rotation": (SPINE_YAW_JOINTS, 1.0),
+}
+"""OpenSim's one joint of the back: the joints whose angles it sums, exact about one axis at a time, and the factor."""
+
+PELVIS_ROTATIONS = ("pelvis_tilt", "pelvis_list", "pelvis_rotation")
+"""Turns of the pelvis in OpenSim's ground, about its own z, then x, then y."""
+PELVIS_TRANSLATIONS = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
+"""Place of the pelvis' origin in OpenSim's ground: here midway between the hip joints."""
+
+R_OW: Array = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From W (x forward, y left, z up) to OpenSim's ground O (x forward, y up, z right)."""

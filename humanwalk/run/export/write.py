@@ -1,0 +1,38 @@
+"""Writes a run in another program's formats."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from humanwalk.quantity import ParameterError
+from humanwalk.run.export.c3d import write_c3d
+from humanwalk.run.export.csv import write_csv
+from humanwalk.run.export.mat import write_mat
+from humanwalk.run.export.opensim import write_opensim
+from humanwalk.run.files import make_folder
+from humanwalk.run.folder import Run
+
+FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
+    "opensim": write_opensim,
+    "c3d": write_c3d,
+    "csv": write_csv,
+    "mat": write_mat,
+}
+"""Every format by name; a function writes a run's files into a folder and returns their paths."""
+
+
+def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
+    """Write a run in a format into a folder, each file whole or not at all.
+
+    Args:
+        run: what to write.
+        to: one of FORMATS.
+        output: folder; by default the format's name inside the run's.
+
+    Raises:
+        ParameterError: unknown format, a missing optional package, or a file that cannot be written.
+    """
+    if to not in FORMATS:
+        raise ParameterError(f"--to {to}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
+    folder = run.path / to if output is None else output
+    make_folder(folder)
+    return FORMATS[to](run, folder)

@@ -1,0 +1,54 @@
+"""What a run came from: enough to repeat it, and to notice that something else was changed since."""
+
+import hashlib
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from humanwalk.scenario import Scenario, dump_scenario
+
+PACKAGES = ("humanwalk", "drake", "numpy")
+
+
+def provenance(scenario: Scenario, signals: pa.Table) -> dict[str, Any]:
+    """Seed, versions and SHA-256 hashes of scenario, signals and followed recording (null without one), for JSON."""
+    recording = scenario.follow.file
+    return {
+        "seed": scenario.seed,
+        "scenario_sha256": scenario_hash(scenario),
+        "signals_sha256": signals_hash(signals),
+        "recording_sha256": file_hash(Path(recording)) if recording else None,
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Of packages, Python and machine, whatever may change the last bit."""
+    packages = {name: version(name) for name in PACKAGES}
+    return packages | {"python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
+
+
+def scenario_hash(scenario: Scenario) -> str:
+    """Of the complete scenario, as it is written down."""
+    return hashlib.sha256(dump_scenario(scenario).encode()).hexdigest()
+
+
+def signals_hash(signals: pa.Table) -> str:
+    """Of names and bits of all columns, in the order of the names; how the file is compressed does not matter."""
+    digest = hashlib.sha256()
+    for name in sorted(signals.column_names):
+        digest.update(name.encode() + b"\0")
+        digest.update(np.ascontiguousarray(signals[name].to_numpy(), dtype=np.float64).tobytes())
+    return digest.hexdigest()
+
+
+def file_hash(path: Path) -> str | None:
+    """Of a file's bytes, or None if it cannot be read any more."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None

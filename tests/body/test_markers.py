@@ -1,0 +1,82 @@
+"""The marker set: named, on the body it says, symmetric, and growing with the body."""
+
+import numpy as np
+import pytest
+
+from humanwalk.body import human
+from humanwalk.body.markers import markers
+from humanwalk.body.plant import Subject
+from humanwalk.body.visuals import visuals
+
+PLUG_IN_GAIT = {
+    *(f"{side}{name}" for side in "RL" for name in ("FHD", "BHD", "SHO", "UPA", "ELB", "FRM", "WRA", "WRB", "FIN")),
+    *(f"{side}{name}" for side in "RL" for name in ("ASI", "PSI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")),
+    *("C7", "T10", "CLAV", "STRN", "RBAK"),
+}
+
+
+def standing(skeleton):
+    """Where every marker is in neutral standing [m]."""
+    return {m.name: skeleton.origins[m.body] + np.array(m.position) for m in markers(skeleton)}
+
+
+def test_plug_in_gait_is_complete_and_told_from_the_rest(skeleton):
+    assert {m.name for m in markers(skeleton) if m.plug_in_gait} == PLUG_IN_GAIT
+    assert len(PLUG_IN_GAIT) == 39
+
+
+def test_names_are_unique_and_bodies_exist(skeleton):
+    names = [m.name for m in markers(skeleton)]
+    assert len(names) == len(set(names))
+    assert {m.body for m in markers(skeleton)} <= {s.name for s in skeleton.segments}
+
+
+def test_sides_mirror_each_other(skeleton):
+    places = standing(skeleton)
+    for name, place in places.items():
+        twin = places.get(f"L{name[1:]}") if name.startswith("R") and name != "RBAK" else None
+        if twin is not None:
+            np.testing.assert_allclose(twin, place * [1, -1, 1], atol=1e-12)
+    assert all(places[name][1] < 0 for name in places if name.startswith("R"))
+
+
+@pytest.mark.parametrize(("mass", "stature"), [(55.0, 1.6), (95.0, 2.0), (70.0, 1.75)])
+def test_markers_grow_with_the_body(mass, stature):
+    scaled = standing(Subject(mass, stature).skeleton)
+    for name, place in standing(human()).items():
+        np.testing.assert_allclose(scaled[name], place * stature / 1.75, atol=1e-9)
+
+
+def test_landmarks_lie_as_in_anatomy(skeleton):
+    p = standing(skeleton)
+    assert p["RFHD"][2] > p["C7"][2] > p["CLAV"][2] > p["STRN"][2] > p["RASI"][2] > p["RKNE"][2] > p["RANK"][2]
+    assert p["RASI"][0] > 0 > p["RPSI"][0]
+    assert p["RTIP"][0] > p["RTOE"][0] > p["RANK"][0] > p["RHEE"][0]
+    assert abs(p["RKNE"][1]) > skeleton.hip_half_width > abs(p["RKNM"][1])
+
+
+def test_middle_of_medial_and_lateral_marker_is_the_joint_centre(skeleton):
+    p = standing(skeleton)
+    for lateral, medial, child in (
+        ("RKNE", "RKNM", "RightLeg_Tibia"),
+        ("LANK", "LANM", "LeftLeg_Ankle_Part1"),
+        ("RELB", "RELM", "RightArm_UlnaRadius_Forearm"),
+    ):
+        np.testing.assert_allclose((p[lateral] + p[medial]) / 2, skeleton.origins[child], atol=1e-12)
+
+
+def test_markers_are_near_the_skin(skeleton):
+    """Within 2 cm of the surface of the nearest visible part of their own or a neighbouring body."""
+    surfaces = []
+    for visual in visuals(skeleton):
+        if visual.primitive == "ellipsoid" and visual.rpy == (0, 0, 0):
+            surfaces.append((skeleton.origins[visual.body] + np.array(visual.center), np.array(visual.size)))
+        elif visual.primitive == "capsule":
+            surfaces.append((skeleton.origins[visual.body] + np.array(visual.center), np.array(visual.size[:1] * 3)))
+    for name, place in standing(skeleton).items():
+        # Distance to an ellipsoid's surface along the ray from its centre.
+        nearest = min(
+            abs(1 - 1 / max(1e-9, np.linalg.norm((place - center) / radii))) * np.linalg.norm(place - center)
+            for center, radii in surfaces
+        )
+        assert nearest < 0.02, name

@@ -1,0 +1,115 @@
+"""A run says what it came from, and repeating it says whether the same came out."""
+
+import json
+import shutil
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from typer.testing import CliRunner
+
+from humanwalk.quantity import ParameterError
+from humanwalk.run.cli import app
+from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run
+from humanwalk.run.provenance import scenario_hash, signals_hash, versions
+from humanwalk.run.reproduce import reproduce
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    scenario = load_scenario("thesis", {"duration": "0.1", "seed": "5", "start.joint_noise": "0.01"})
+    return simulate(scenario).save(tmp_path_factory.mktemp("made") / "run")
+
+
+@pytest.fixture
+def run(made, tmp_path):
+    """A copy to change."""
+    return Run.open(shutil.copytree(made.path, tmp_path / "run"))
+
+
+def change_summary(run, change):
+    summary = json.loads((run.path / SUMMARY).read_text())
+    change(summary)
+    (run.path / SUMMARY).write_text(json.dumps(summary))
+    return Run.open(run.path)
+
+
+def change_signal(run, name, factor):
+    table = pq.read_table(run.path / SIGNALS)
+    column = pa.array(factor * table[name].to_numpy())
+    pq.write_table(table.set_column(table.column_names.index(name), name, column), run.path / SIGNALS)
+    return Run.open(run.path)
+
+
+def test_run_says_what_it_came_from(made):
+    told = made.summary["provenance"]
+    assert told["seed"] == 5
+    assert told["scenario_sha256"] == scenario_hash(made.scenario)
+    assert told["signals_sha256"] == signals_hash(made.signals)
+    assert told["versions"] == versions()
+    assert {"humanwalk", "drake", "numpy", "python", "machine"} == set(told["versions"])
+    assert json.loads(made.signals.schema.metadata[b"humanwalk"])["scenario_sha256"] == told["scenario_sha256"]
+
+
+def test_hash_of_signals_sees_a_bit_a_name_and_nothing_else():
+    table = pa.table({"a": [1.0, 2.0], "b": [3.0, 4.0]})
+    assert signals_hash(table) == signals_hash(table.select(["b", "a"]))
+    assert signals_hash(table) != signals_hash(table.rename_columns(["a", "c"]))
+    assert signals_hash(table) != signals_hash(pa.table({"a": [1.0, np.nextafter(2.0, 3)], "b": [3.0, 4.0]}))
+
+
+def test_repeated_run_has_the_same_bits(run):
+    result = reproduce(run)
+    assert (result.bits_agree, result.measures_agree, result.notes) == (True, True, ())
+
+
+def test_interrupted_run_is_repeated_as_far_as_it_went(run):
+    stopped = change_summary(run, lambda summary: summary.update(end="interrupted"))
+    text = (run.path / SCENARIO).read_text()
+    (run.path / SCENARIO).write_text(text.replace("duration: 0.1", "duration: 60.0"))
+    assert reproduce(Run.open(stopped.path)).bits_agree
+
+
+def test_other_bits_with_the_same_measures_are_told_apart(run):
+    result = reproduce(change_signal(run, "Head_Motion.torque_N_m", 1 + 1e-12))
+    assert not result.bits_agree
+    assert result.measures_agree
+    assert "1 signals differ, first Head_Motion.torque_N_m" in " ".join(result.notes)
+    assert "other bits, the same measures" in result.verdict
+
+
+def test_other_measures_are_named(run):
+    result = reproduce(change_signal(run, "RightLegTibiaMotion.torque_N_m", 1.5))
+    assert not result.measures_agree
+    assert "peak_torque_N_m.RightLegTibiaMotion" in " ".join(result.notes)
+    assert result.verdict == "other measures"
+
+
+def test_what_was_changed_since_is_noted(run):
+    changed = change_summary(
+        run,
+        lambda summary: summary["provenance"].update(
+            scenario_sha256="0", versions=summary["provenance"]["versions"] | {"drake": "1.0"}
+        ),
+    )
+    notes = " ".join(reproduce(changed).notes)
+    assert "scenario.yaml was changed" in notes
+    assert "was 1.0" in notes
+
+
+def test_run_whose_recording_is_gone_is_refused(run, tmp_path):
+    text = (run.path / SCENARIO).read_text()
+    (run.path / SCENARIO).write_text(text.replace("file: ''", f"file: {tmp_path}/gone.mot"))
+    with pytest.raises(ParameterError, match=r"gone\.mot is gone"):
+        reproduce(Run.open(run.path))
+
+
+def test_command_says_the_verdict_and_fails_if_it_differs(run):
+    result = CliRunner().invoke(app, ["reproduce", str(run.path)])
+    assert result.exit_code == 0, result.output
+    assert "the same bits in every signal" in result.output
+    change_signal(run, "RightLegTibiaMotion.torque_N_m", 1.5)
+    assert CliRunner().invoke(app, ["reproduce", str(run.path)]).exit_code == 1

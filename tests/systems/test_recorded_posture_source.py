@@ -1,0 +1,95 @@
+"""The recorded posture as ports: piecewise cubic, with velocities that are derivatives, from rest to rest."""
+
+import numpy as np
+import pytest
+
+from humanwalk.gait.recorded_motion import RecordedMotion
+from humanwalk.systems.recorded_posture_source import RecordedPostureSource
+
+N = 3
+
+
+def motion(ease_in=0.3, period=0.02, duration=1.0):
+    time = np.arange(0, duration + 0.5 * period, period)
+    angles = np.column_stack([np.sin((i + 2) * time) for i in range(N)])
+    turns = np.column_stack((0.1 * np.sin(3 * time), 0.2 * np.cos(2 * time), 0.5 * time))
+    place = np.column_stack((1.2 * time, 0.02 * np.sin(4 * time), 0.9 + 0.01 * np.cos(8 * time)))
+    return RecordedMotion(time, angles, turns, place, ease_in)
+
+
+def at(source, time):
+    context = source.CreateDefaultContext()
+    context.SetTime(time)
+    return {
+        "desired_state": source.get_desired_state_output_port().Eval(context),
+        "X_WP": source.get_pelvis_pose_output_port().Eval(context),
+        "V_WP": source.get_pelvis_velocity_output_port().Eval(context),
+        "p_WP": source.get_pelvis_position_output_port().Eval(context),
+    }
+
+
+def test_ports_are_those_of_the_docstring():
+    source = RecordedPostureSource(motion())
+    names = [source.get_output_port(i).get_name() for i in range(source.num_output_ports())]
+    assert names == ["desired_state", "X_WP", "V_WP", "p_WP"]
+    assert source.num_input_ports() == 0
+    assert source.get_desired_state_output_port().size() == 2 * N
+
+
+@pytest.mark.parametrize("ease_in", [0.0, 0.3])
+def test_samples_are_met_after_the_ease_in(ease_in):
+    recorded = motion(ease_in)
+    source = RecordedPostureSource(recorded)
+    for row in (20, 33, 50):
+        found = at(source, recorded.time[row] + 0.5 * ease_in)
+        np.testing.assert_allclose(found["desired_state"][:N], recorded.angles[row], atol=1e-9)
+        np.testing.assert_allclose(found["p_WP"], recorded.pelvis_place[row], atol=1e-9)
+        np.testing.assert_array_equal(found["X_WP"].translation(), found["p_WP"])
+
+
+@pytest.mark.parametrize("time", [0.05, 0.2, 0.37, 0.71, 1.11])
+def test_velocities_are_time_derivatives(time):
+    source, h = RecordedPostureSource(motion()), 1e-6
+    before, now, after = at(source, time - h), at(source, time), at(source, time + h)
+    rate = (after["desired_state"][:N] - before["desired_state"][:N]) / (2 * h)
+    np.testing.assert_allclose(now["desired_state"][N:], rate, atol=1e-5)
+    np.testing.assert_allclose(now["V_WP"].translational(), (after["p_WP"] - before["p_WP"]) / (2 * h), atol=1e-5)
+    R = [state["X_WP"].rotation().matrix() for state in (before, now, after)]
+    w_cross = (R[2] - R[0]) / (2 * h) @ R[1].T
+    w = 0.5 * np.array([w_cross[2, 1] - w_cross[1, 2], w_cross[0, 2] - w_cross[2, 0], w_cross[1, 0] - w_cross[0, 1]])
+    np.testing.assert_allclose(now["V_WP"].rotational(), w, atol=1e-5)
+
+
+def test_motion_starts_and_ends_at_rest():
+    recorded = motion()
+    source = RecordedPostureSource(recorded)
+    for time, row in ((0.0, 0), (recorded.duration + 1.0, -1)):
+        found = at(source, time)
+        np.testing.assert_allclose(found["desired_state"][:N], recorded.angles[row], atol=1e-12)
+        np.testing.assert_array_equal(found["desired_state"][N:], 0)
+        np.testing.assert_array_equal(found["V_WP"].get_coeffs(), 0)
+
+
+@pytest.mark.parametrize("period", [0.005, 0.01, 0.02, 0.04])
+def test_sampling_rate_of_the_recording_changes_little(period):
+    """Resampling: the curve between samples is the recorded motion, whatever the rate."""
+    source = RecordedPostureSource(motion(ease_in=0.0, period=period))
+    for time in (0.1234, 0.5, 0.777):
+        np.testing.assert_allclose(
+            at(source, time)["desired_state"][:N], np.sin((np.arange(N) + 2) * time), atol=10 * period**2
+        )
+
+
+def test_curve_does_not_overshoot_its_samples():
+    time = np.arange(6.0)
+    step = np.array([0, 0, 0, 1, 1, 1.0])[:, None]
+    recorded = RecordedMotion(time, step, np.zeros((6, 3)), np.zeros((6, 3)), 0.0)
+    values = [recorded.joints(t)[0][0] for t in np.linspace(0, 5, 101)]
+    assert min(values) >= -1e-12
+    assert max(values) <= 1 + 1e-12
+
+
+def test_two_samples_are_enough():
+    recorded = RecordedMotion(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]), np.zeros((2, 3)), np.zeros((2, 3)), 0.0)
+    angle, rate = recorded.joints(0.25)
+    assert (angle[0], rate[0]) == (0.25, 1.0)

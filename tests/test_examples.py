@@ -1,0 +1,94 @@
+"""Every example runs, shortened, and does what its first line says."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import humanwalk
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:multiprocessing")
+
+
+def example(name):
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_example_is_tested():
+    tested = {"build_a_walker", "sweep_a_parameter", "plot_joint_torques", "read_a_run", "own_controller"}
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == tested
+
+
+def test_build_a_walker_walks():
+    assert example("build_a_walker").main(0.2) > 0
+
+
+def test_sweep_simulates_each_value(monkeypatch):
+    class SameProcess:
+        def __init__(self, *args, **kwargs): ...
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *args): ...
+
+        map = staticmethod(map)
+
+    sweep = example("sweep_a_parameter")
+    monkeypatch.setattr(sweep, "ProcessPoolExecutor", SameProcess)
+    summaries = sweep.main((0.12, 0.18), 0.05)
+    assert [summary["scenario"] for summary in summaries] == ["step height 0.12 m", "step height 0.18 m"]
+    assert {summary["end"] for summary in summaries} == {"completed"}
+
+
+def test_plot_joint_torques_draws_both_knees(tmp_path):
+    figure = example("plot_joint_torques").main(0.05, tmp_path / "torques.png")
+    assert (tmp_path / "torques.png").stat().st_size > 1000
+    assert [line.get_label() for line in figure.axes[0].lines] == ["right knee", "left knee"]
+
+
+def test_own_controller_changes_the_walk():
+    own = example("own_controller")
+    assert own.main(0.2, lever=0.05) != own.main(0.2, lever=0.0)
+
+
+def test_read_a_run_reads_what_a_script_saved(tmp_path):
+    scenario = humanwalk.load_scenario("thesis", {"duration": "0.1"})
+    run = humanwalk.simulate(scenario).save(tmp_path / "run")
+    assert example("read_a_run").main(run.path) == pytest.approx(run["right_foot.force_z_N"].max())
+    assert (run.path / "my_ground_reaction.png").is_file()
+    assert (run.path / "opensim" / "angles.mot").is_file()
+
+    # The run as a table with units.
+    assert run.units["RightLegTibiaMotion.torque_N_m"] == "N m"
+    assert run.units["com.velocity_x_m_s"] == "m/s"
+    assert run.units["RightLegTibiaMotion.velocity_rad_s"] == "rad/s"
+    assert run.units["right_foot.loaded"] == run.units["pelvis.quaternion_w"] == ""
+    np.testing.assert_array_equal(run["com.x"], run["com.x_m"])
+    np.testing.assert_array_equal(run.time, run.signals["time_s"].to_numpy())
+    with pytest.raises(humanwalk.ParameterError, match=r"RightLegTibiaMotion\.torque_N_m"):
+        run["RightLegTibaMotion.torque"]
+    with pytest.raises(humanwalk.ParameterError, match="joint_torques"):
+        run.plot("joint_torqes")
+    with pytest.raises(humanwalk.ParameterError, match="holds files already"):
+        humanwalk.simulate(humanwalk.load_scenario("thesis", {"duration": "0.002"})).save(run.path)
+
+
+def test_everything_promised_at_the_top_is_there():
+    for name in humanwalk.__all__:
+        assert getattr(humanwalk, name) is not None
+    with pytest.raises(AttributeError, match="no_such"):
+        _ = humanwalk.no_such
+
+
+def test_importing_the_package_does_not_import_drake():
+    import subprocess
+    import sys
+
+    code = "import sys, humanwalk; raise SystemExit('pydrake' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
