@@ -1,6 +1,6 @@
 # Every target sets up what it needs: a Python, .venv, the packages of requirements.lock.
 .DEFAULT_GOAL := help
-.PHONY: help walk test lint lock clean
+.PHONY: help walk test lint docs gallery lock clean
 
 BIN := .venv/bin
 ARGS ?=
@@ -22,9 +22,15 @@ lint: .venv/.installed ## Check style, types and the import rule
 	$(BIN)/mypy -p humanwalk
 	$(BIN)/lint-imports
 
+docs: .venv/.installed ## Build the book into build/docs; asks no other host
+	@NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --quiet --strict
+
+gallery: .venv/.installed ## Make every picture and video of the book anew (a quarter of an hour)
+	@$(BIN)/python docs/make_gallery.py
+
 lock: .venv/.installed ## Choose the newest versions that pyproject.toml allows
 	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-header --no-annotate --upgrade \
-		--python-version 3.12 --group dev --output-file requirements.lock pyproject.toml
+		--python-version 3.12 --group dev --group docs --output-file requirements.lock pyproject.toml
 
 clean: ## Remove .venv, caches and builds; keep runs
 	rm -rf .venv build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

@@ -1,0 +1,43 @@
+"""The book's code runs, and its pictures are those of what is shipped."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from humanwalk.scenario import parse_scenario, shipped_scenarios
+
+DOCS = Path(__file__).parent.parent / "docs"
+HOW_TO = sorted((DOCS / "howto").glob("*.md"))
+
+MOVING_PICTURE_LIMIT = 1_500_000
+"""Bytes of the picture on README's first screen."""
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}[^\n]*\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
+def test_the_python_of_a_how_to_runs(page):
+    for code in blocks(page, "python"):
+        exec(compile(code, page.name, "exec"), {"__name__": page.stem})
+
+
+@pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
+def test_the_scenarios_of_a_how_to_are_valid(page):
+    for text in blocks(page, "yaml"):
+        parse_scenario(text)
+
+
+def test_there_is_code_to_run():
+    assert sum(len(blocks(page, "python")) for page in HOW_TO) >= 3
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_every_scenario_has_its_diagram_in_the_book(name):
+    assert (DOCS / "images" / f"diagram_{name}.svg").read_text(encoding="utf-8").count("name=") > 8
+
+
+def test_the_moving_picture_is_light_enough_for_a_first_screen():
+    assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
