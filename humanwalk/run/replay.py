@@ -259,4 +259,5 @@ def _add_arrow(meshcat: Meshcat, path: str) -> None:
         # What is see-through is drawn after the rest, and then by this order.
         meshcat.SetProperty(drawn, "material.transparent", True)
         meshcat.SetProperty(drawn, "renderOrder", 1.0)
-        meshcat.SetProperty(drawn, "castShadow", False)
+        for shadow in ("castShadow", "receiveShadow"):
+            meshcat.SetProperty(drawn, shadow, False)

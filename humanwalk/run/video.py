@@ -15,7 +15,7 @@ from typing import Literal, get_args
 
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.run.browser import Camera, missing_extra, open_stage
-from humanwalk.run.files import write_whole
+from humanwalk.run.files import make_folder, write_whole
 from humanwalk.run.folder import Run
 from humanwalk.run.replay import CAMERA_POSITION, CAMERA_TARGET
 
@@ -162,6 +162,8 @@ def record_video(
     if form not in FORMATS:
         raise ParameterError(f"-o {output}: unknown video format; allowed: {', '.join(FORMATS)}; name it walk.mp4")
     ffmpeg = find_ffmpeg()
+    # Now, rather than when all frames are drawn.
+    make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
         frames = Path(folder) / "frames.mjpeg"
         with open_stage(page, parameters.width, parameters.height) as stage, frames.open("wb") as file:
@@ -198,6 +200,7 @@ def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, 
     check_picture(width, height, view)
     if not times:
         raise ParameterError("--times: none; allowed: at least one instant; like 1.0,1.2")
+    make_folder(output.parent)
     strip = Image.new("RGB", (len(times) * (width + STRIP_GAP) - STRIP_GAP, height + STRIP_LABEL), "white")
     draw = ImageDraw.Draw(strip)
     font = ImageFont.load_default(18)

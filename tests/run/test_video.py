@@ -115,3 +115,14 @@ def test_without_any_browser_playwright_looks_for_its_own(monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("humanwalk.run.browser.MACOS_BROWSERS", ())
     assert find_browser() is None
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run, monkeypatch):
+    def never(*_):
+        raise AssertionError("a browser was opened")
+
+    monkeypatch.setattr("humanwalk.run.video.open_stage", never)
+    blocked = run / "file"
+    blocked.touch()
+    with pytest.raises(ParameterError, match="allowed: a folder that you may write to"):
+        record_video(run, blocked / "walk.mp4", VideoParameters())
