@@ -299,10 +299,5 @@ def test_diagram_of_an_unknown_format_is_refused(refusal, name):
     assert "svg, png, pdf" in refusal("diagram", "-o", name)
 
 
-def test_diagram_without_graphviz_is_refused(refusal, monkeypatch):
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    assert "install" in refusal("diagram", "-o", "d.svg")
-
-
 def test_diagram_of_an_unknown_scenario_is_refused(refusal):
     assert "thesiss" in refusal("diagram", "thesiss", "-o", "d.svg")

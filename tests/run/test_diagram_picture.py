@@ -8,7 +8,7 @@ import pytest
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Adder, Gain
 
-from humanwalk.diagrams.walker import make_walker
+from humanwalk.diagrams.choose import make_diagram
 from humanwalk.quantity import ParameterError
 from humanwalk.run.diagram_picture import draw_diagram, find_graphviz, with_own_numbers, with_wired_ports
 from humanwalk.scenario import load_scenario, shipped_scenarios
@@ -42,9 +42,11 @@ def words(svg):
 @pytest.mark.parametrize("name", shipped_scenarios())
 def test_the_walker_of_every_scenario_is_drawn_with_its_systems_by_name(name, tmp_path):
     path = tmp_path / "walker.svg"
-    draw_diagram(make_walker(load_scenario(name)), path)
+    scenario = load_scenario(name)
+    draw_diagram(make_diagram(scenario), path)
     text = words(path)
-    for system in ("gait", "inverse_kinematics", "actuators", "plant", "scene_graph", "foot_force_observer"):
+    own = {"thesis": ("gait", "inverse_kinematics"), "balanced": ("planner", "controller")}[scenario.controller]
+    for system in (*own, "actuators", "plant", "scene_graph", "foot_force_observer"):
         assert f"name={system}" in text
 
 

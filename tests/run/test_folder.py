@@ -29,7 +29,11 @@ def test_run_that_was_written_is_read_back(outcome, tmp_path):
     assert run.summary["scenario"] == "thesis"
     assert run.summary["seed"] == 5
     assert {path.name for path in tmp_path.iterdir()} == {SCENARIO, SIGNALS, SUMMARY}
-    assert (run.replay.parent, run.plots.parent) == (tmp_path, tmp_path)
+    assert run.plots.parent == tmp_path
+    with pytest.raises(ParameterError, match="without --no-replay"):
+        _ = run.replay
+    (tmp_path / "replay.html").touch()
+    assert run.replay.parent == tmp_path
 
 
 def test_signals_know_where_they_come_from(outcome, tmp_path):

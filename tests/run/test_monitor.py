@@ -85,6 +85,8 @@ def test_interrupt_ends_the_simulation_at_the_next_look(falling_plant):
 
 
 def test_second_interrupt_does_what_it_always_did(falling_plant):
+    # Whatever a test before has left there.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     monitor = Monitor(falling_plant)
     with monitor.stop_on_interrupt():
         os.kill(os.getpid(), signal.SIGINT)
