@@ -85,6 +85,8 @@ def steady_from(scenario: Scenario) -> float:
         return scenario.follow.ease_in
     if scenario.controller == "balanced":
         command = scenario.balanced.command
+        if not command.points:
+            return 0.0
         first = command.points[0]
         ramp = abs(complex(first.forward, first.sideways)) / command.acceleration
         return first.time + scenario.balanced.planner.timing.weight_shift + ramp + SETTLING

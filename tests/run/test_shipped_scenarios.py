@@ -1,0 +1,17 @@
+"""Every scenario that is shipped walks, and what it leaves is a run."""
+
+import pytest
+
+from humanwalk.run.folder import write_run
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario, shipped_scenarios
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_scenario_walks_for_a_moment(name, tmp_path):
+    outcome = simulate(load_scenario(name, {"duration": "0.1"}))
+    assert outcome.end == "completed"
+    run = write_run(tmp_path, outcome, name)
+    assert run.summary["survived"] is True
+    assert run.summary["external_support"] is (load_scenario(name).controller == "thesis")
+    assert run.signals.num_rows == 21
