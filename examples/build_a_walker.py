@@ -46,10 +46,9 @@ def main(duration: float = 3.0) -> float:
     builder.Connect(solver.get_desired_state_output_port(), bank.get_desired_state_input_port())
     builder.Connect(solver.get_sample_time_output_port(), bank.get_sample_time_input_port())
     builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(body.instance))
-    builder.Connect(source.get_pelvis_pose_output_port(), support.get_reference_pose_input_port())
-    builder.Connect(source.get_pelvis_velocity_output_port(), support.get_reference_velocity_input_port())
+    builder.Connect(source.get_pelvis_reference_output_port(), support.get_pelvis_reference_input_port())
     builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-    builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+    builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
     meshcat = Meshcat(MeshcatParams(host="localhost"))
     MeshcatVisualizer.AddToBuilder(builder, body.scene_graph, meshcat)
 

@@ -1,13 +1,12 @@
 """The balance that the thesis assumes: a spring-damper between the pelvis and its walking reference."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.math import RigidTransform
 
-from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.control.stability import largest_stable_step
 from humanwalk.quantity import quantity
 
@@ -57,23 +56,41 @@ class BalanceSupportParameters:
         )
 
 
-def support_wrench(
-    X_WP: RigidTransform,
-    V_WP: Array,
-    X_WPref: RigidTransform,
-    V_WPref: Array,
-    parameters: BalanceSupportParameters,
-) -> Array:
+def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force [torque; force] on the pelvis at Po, in W, shape (6,) [N m, N].
 
     Args:
-        X_WP, X_WPref: pose of the pelvis and its reference.
-        V_WP, V_WPref: [angular; translational] velocities in W, shape (6,) [rad/s, m/s].
+        q_WP: pose of the pelvis as Drake's floating base has it, [quaternion wxyz; position [m]], shape (7,); the
+            quaternion may be a little off unit length, as Drake lets it drift.
+        V_WP: its [angular; translational] velocity in W, shape (6,) [rad/s, m/s].
+        reference: both of the reference, [q; V], shape (13,).
         parameters: stiffness and damping.
     """
     K, D = parameters.diagonals
-    wrench: Array = -K * pose_error(X_WP, X_WPref) - D * (V_WP - V_WPref)
+    error = np.empty(6)
+    error[:3] = _rotation_vector(q_WP[:4], reference[:4])
+    error[3:] = q_WP[4:] - reference[4:7]
+    wrench: Array = -K * error - D * (V_WP - reference[7:])
     return wrench
+
+
+def _rotation_vector(wxyz: Array, wxyz_reference: Array) -> tuple[float, float, float]:
+    """Rotation vector [rad] in W that leads from the reference's orientation to the other one, the shorter way.
+
+    In plain floats: it is called at every step of the plant, and Drake's own types take five times as long to cross
+    into Python.
+    """
+    w, x, y, z = wxyz.tolist()
+    a, b, c, d = wxyz_reference.tolist()
+    # The product of the one with the conjugate of the other.
+    scalar = w * a + x * b + y * c + z * d
+    i = -w * b + x * a - y * d + z * c
+    j = -w * c + x * d + y * a - z * b
+    k = -w * d - x * c + y * b + z * a
+    sine = math.sqrt(i * i + j * j + k * k)
+    # A quaternion and its negative are one orientation. Near no rotation at all angle / sine goes to 2 / cosine.
+    scale = 2.0 * math.atan2(math.copysign(sine, scalar), abs(scalar)) / sine if sine > 1e-12 else 2.0 / scalar
+    return scale * i, scale * j, scale * k
 
 
 def largest_support_step(

@@ -1,37 +1,58 @@
 """Cubic Hermite interpolation of a state between two samples."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
 
-def hermite_between(t0: float, x0: Array, t1: float, x1: Array, t: float) -> Array:
-    """State [q; v] at t from the states at t0 < t1: the cubic that has both positions and both velocities.
+@dataclass(frozen=True)
+class HermitePiece:
+    """The cubic that has the positions and the velocities of two samples; outside them it goes on straight.
 
-    Args:
+    Its coefficients are worked out once for the many times at which it is asked.
+
+    Attributes:
         t0, t1: times of the samples [s]. With t1 <= t0 only the second counts.
-        x0, x1: [q; v], shape (2n,) each.
-        t: time [s]; outside the samples q moves on with the velocity of the nearer one.
-
-    Returns:
-        [q; v] with v the time derivative of q, shape (2n,).
+        x0, x1: states [q; v] of the samples, shape (2n,) each.
+        coefficients: of the powers 0 to 3 of t - t0, shape (4, 2n).
     """
-    n = x0.size // 2
-    h = t1 - t0
-    if t >= t1 or h <= 0.0:
-        late = x1.copy()
-        late[:n] += (t - t1) * x1[n:]
-        return late
-    if t <= t0:
-        early = x0.copy()
-        early[:n] += (t - t0) * x0[n:]
-        return early
-    u = (t - t0) / h
-    rest = 1.0 - u
-    x = np.empty_like(x0)
-    q0, v0, q1, v1 = x0[:n], x0[n:], x1[:n], x1[n:]
-    way = q1 - q0
-    x[:n] = q0 + (u * u * (3.0 - 2.0 * u)) * way + (h * u * rest) * (rest * v0 - u * v1)
-    x[n:] = (6.0 * u * rest / h) * way + (rest * (1.0 - 3.0 * u)) * v0 + (u * (3.0 * u - 2.0)) * v1
-    return x
+
+    t0: float
+    x0: Array
+    t1: float
+    x1: Array
+    coefficients: Array
+
+    @staticmethod
+    def between(t0: float, x0: Array, t1: float, x1: Array) -> "HermitePiece":
+        """The piece between two samples."""
+        n = x0.size // 2
+        coefficients = np.zeros((4, x0.size))
+        h = t1 - t0
+        if h > 0.0:
+            (q0, v0), (q1, v1) = np.split(x0, 2), np.split(x1, 2)
+            chord = (q1 - q0) / h
+            bend, twist = (3.0 * chord - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * chord) / (h * h)
+            coefficients[:, :n] = q0, v0, bend, twist
+            coefficients[:3, n:] = v0, 2.0 * bend, 3.0 * twist
+        return HermitePiece(t0, x0, t1, x1, coefficients)
+
+    def at(self, t: float) -> Array:
+        """State [q; v] at t [s], shape (2n,), v the time derivative of q."""
+        if t >= self.t1:
+            return _straight_on(self.x1, t - self.t1)
+        if t <= self.t0:
+            return _straight_on(self.x0, t - self.t0)
+        s = t - self.t0
+        state: Array = np.array((1.0, s, s * s, s * s * s)) @ self.coefficients
+        return state
+
+
+def _straight_on(x: Array, elapsed: float) -> Array:
+    n = x.size // 2
+    later = x.copy()
+    later[:n] += elapsed * x[n:]
+    return later

@@ -15,7 +15,7 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 from scipy.linalg.lapack import dgesdd
@@ -118,10 +118,16 @@ class LegKinematics:
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
         self._q = plant.GetPositions(self._context)
         self._q[self._q_index] = 0.0
+        self._is_at = b""
+        self._So = np.zeros(3)
 
     def _set(self, theta: Array) -> None:
-        self._q[self._q_index] = theta
-        self._plant.SetPositions(self._context, self._q)
+        # A pose is followed by its Jacobian; set again, the same angles would make Drake work out both anew.
+        angles = theta.tobytes()
+        if angles != self._is_at:
+            self._q[self._q_index] = theta
+            self._plant.SetPositions(self._context, self._q)
+            self._is_at = angles
 
     def within_range(self, theta: Array) -> Array:
         """The nearest joint angles inside the joint ranges."""
@@ -138,7 +144,7 @@ class LegKinematics:
         """Drake's Jacobian of the spatial velocity (rotation first) of S in P, expressed in P; (6, n)."""
         self._set(theta)
         J = self._plant.CalcJacobianSpatialVelocity(
-            self._context, JacobianWrtVariable.kV, self._S, np.zeros(3), self._P, self._P
+            self._context, JacobianWrtVariable.kV, self._S, self._So, self._P, self._P
         )
         return np.asarray(J[:, self._v_index])
 
@@ -162,11 +168,26 @@ def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
 
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
-    angle_axis = (X.rotation() @ X_desired.rotation().inverse()).ToAngleAxis()
+    # One number after the other crosses from C++ into Python at a price; the matrices cross whole.
+    A, B = X.GetAsMatrix34(), X_desired.GetAsMatrix34()
     error = np.empty(6)
-    error[:3] = angle_axis.angle() * angle_axis.axis()
-    error[3:] = X.translation() - X_desired.translation()
+    error[:3] = _rotation_vector(A[:, :3] @ B[:, :3].T)
+    error[3:] = A[:, 3] - B[:, 3]
     return error
+
+
+def _rotation_vector(R: Array) -> Array | tuple[float, float, float]:
+    """Axis times angle [rad] of a rotation matrix, shape (3,)."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()
+    x, y, z = zy - yz, xz - zx, yx - xy
+    sine2, cosine2 = math.sqrt(x * x + y * y + z * z), xx + yy + zz - 1.0
+    if cosine2 < 0.0:
+        # Beyond a right angle the antisymmetric part loses the axis.
+        angle_axis = RotationMatrix(R).ToAngleAxis()
+        far: Array = angle_axis.angle() * angle_axis.axis()
+        return far
+    scale = math.atan2(sine2, cosine2) / sine2 if sine2 > 1e-12 else 0.5
+    return scale * x, scale * y, scale * z
 
 
 def solve_inverse_kinematics(

@@ -45,18 +45,18 @@ def make_playback(scenario: Scenario) -> Diagram:
 
     if scenario.follow.file:
         source = builder.AddNamedSystem("recording", RecordedPostureSource(followed_motion(scenario)))
-        pelvis_pose, desired_state = source.get_pelvis_pose_output_port(), source.get_desired_state_output_port()
+        pelvis, desired_state = source.get_pelvis_reference_output_port(), source.get_desired_state_output_port()
     else:
         reference = add_walking_reference(builder, scenario)
         solver = reference.inverse_kinematics
         connect_soles(builder, reference.gait, solver)
         builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
-        pelvis_pose, desired_state = (
-            reference.gait.get_pelvis_pose_output_port(),
+        pelvis, desired_state = (
+            reference.gait.get_pelvis_reference_output_port(),
             reference.interpolator.get_desired_state_output_port(),
         )
         builder.ExportOutput(solver.get_status_output_port(), "ik_status")
-    builder.Connect(pelvis_pose, positions.get_pelvis_pose_input_port())
+    builder.Connect(pelvis, positions.get_pelvis_reference_input_port())
     builder.Connect(desired_state, positions.get_desired_state_input_port())
     builder.Connect(positions.get_positions_output_port(), to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))

@@ -41,7 +41,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
         ik_status (6): see InverseKinematicsSolver; not with a recording.
-        pelvis_reference (3): where the pelvis should be in W [m].
+        pelvis_reference (13): where the pelvis should be in W: quaternion, position, angular velocity, velocity.
         phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
         foot_forces (16): see FootForceObserver.
@@ -87,10 +87,9 @@ def make_walker(scenario: Scenario) -> Diagram:
         )
         _require_stable_support(human, parameters)
         support = builder.AddNamedSystem("support", BalanceSupport(plant, parameters))
-        builder.Connect(reference.pelvis_pose, support.get_reference_pose_input_port())
-        builder.Connect(reference.pelvis_velocity, support.get_reference_velocity_input_port())
+        builder.Connect(reference.pelvis, support.get_pelvis_reference_input_port())
         builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-        builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+        builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
         builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
 
     builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
@@ -101,6 +100,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
         (reference.desired_state, "desired_state"),
+        (reference.pelvis, "pelvis_reference"),
         *((port, name) for name, port in reference.exports.items()),
         (body.get_soles_output_port(), "soles"),
         (body.get_com_output_port(), "com"),
@@ -117,8 +117,7 @@ class _Reference:
     """Ports of what the walker is to do."""
 
     desired_state: OutputPort
-    pelvis_pose: OutputPort
-    pelvis_velocity: OutputPort
+    pelvis: OutputPort
     exports: dict[str, OutputPort]
 
 
@@ -127,12 +126,7 @@ def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlan
     motion = followed_motion(scenario)
     human.plant.SetDefaultPositions(start_positions(scenario, motion))
     source = builder.AddNamedSystem("recording", RecordedPostureSource(motion))
-    return _Reference(
-        source.get_desired_state_output_port(),
-        source.get_pelvis_pose_output_port(),
-        source.get_pelvis_velocity_output_port(),
-        {"pelvis_reference": source.get_pelvis_position_output_port()},
-    )
+    return _Reference(source.get_desired_state_output_port(), source.get_pelvis_reference_output_port(), {})
 
 
 def _add_gait(
@@ -145,7 +139,6 @@ def _add_gait(
     gait, solver = walking.gait, walking.inverse_kinematics
     exports = {
         "ik_status": solver.get_status_output_port(),
-        "pelvis_reference": gait.get_pelvis_position_output_port(),
         "phase": gait.get_phase_output_port(),
         "contact_schedule": gait.get_contact_schedule_output_port(),
     }
@@ -172,10 +165,7 @@ def _add_gait(
         posture = level_2.get_balanced_posture_output_port()
     builder.Connect(posture, solver.get_posture_input_port())
     return _Reference(
-        walking.interpolator.get_desired_state_output_port(),
-        gait.get_pelvis_pose_output_port(),
-        gait.get_pelvis_velocity_output_port(),
-        exports,
+        walking.interpolator.get_desired_state_output_port(), gait.get_pelvis_reference_output_port(), exports
     )
 
 

@@ -24,15 +24,24 @@ def _xyz(prefix: str, unit: str) -> list[str]:
     return [f"{prefix}{axis}_{unit}" for axis in "xyz"]
 
 
+def _floating_base(prefix: str) -> list[str]:
+    return [
+        *(f"{prefix}quaternion_{axis}" for axis in "wxyz"),
+        *_xyz(prefix, "m"),
+        *_xyz(f"{prefix}angular_velocity_", "rad_s"),
+        *_xyz(f"{prefix}velocity_", "m_s"),
+    ]
+
+
 def signal_columns(joints: JointMap) -> dict[str, list[str]]:
     """Column names of every exported port of a walker that is recorded, in the order of the port's elements.
 
     Names are `thing.quantity_unit`: `RightLegTibiaMotion.angle_rad`, `right_foot.force_z_N`.
     """
     state = [""] * (joints.num_positions + joints.num_positions - 1)
-    state[:7] = [*(f"pelvis.quaternion_{axis}" for axis in "wxyz"), *_xyz("pelvis.", "m")]
     first_v = joints.num_positions
-    state[first_v : first_v + 6] = [*_xyz("pelvis.angular_velocity_", "rad_s"), *_xyz("pelvis.velocity_", "m_s")]
+    pelvis = _floating_base("pelvis.")
+    state[:7], state[first_v : first_v + 6] = pelvis[:7], pelvis[7:]
     for name, q, v in zip(joints.names, joints.q, joints.v, strict=True):
         state[q] = f"{name}.angle_rad"
         state[first_v + v] = f"{name}.velocity_rad_s"
@@ -54,7 +63,7 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
         "ik_status": [
             f"{side}_leg.{column}" for column in ("ik_residual", "ik_iterations", "ik_converged") for side in sides
         ],
-        "pelvis_reference": [*_xyz("pelvis.reference_", "m")],
+        "pelvis_reference": _floating_base("pelvis.reference_"),
         "support_wrench": [*_xyz("support.torque_", "N_m"), *_xyz("support.force_", "N")],
         "foot_shift": [
             *(column for side in sides for column in _xyz(f"{side}_foot.shift_", "m")),

@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.math import SpatialVelocity
@@ -11,8 +10,6 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPo
 
 from humanwalk.body import SIDES, Side, Skeleton
 from humanwalk.gait.walking_gait import FootTarget, WalkingGait
-
-Array = npt.NDArray[np.float64]
 
 
 def _sole_velocity(foot: FootTarget) -> SpatialVelocity:
@@ -28,9 +25,8 @@ class GaitSplineSource(LeafSystem):
         X_PRs, X_PLs: RigidTransform, desired pose of the right and left sole frame in the pelvis P. Soles are level
             in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by the path's toe_drop.
         V_PRs, V_PLs: SpatialVelocity, their time derivatives, in P.
-        X_WP: RigidTransform, reference pose of the pelvis in the world: upright, walking along +x.
-        V_WP: SpatialVelocity, its time derivative, in W.
-        p_WP: (3) the translation of X_WP [m], for records.
+        pelvis_reference: (13) where the pelvis should be in W, upright and walking along +x, as Drake's floating base
+            has it: quaternion wxyz, position [m], angular velocity [rad/s], velocity [m/s].
         phase: (2) phase of the right and of the left foot in [0, 1), 0 at touchdown.
         contact_schedule: (2) right, left: 1 in stance, 0 in swing.
     """
@@ -42,7 +38,6 @@ class GaitSplineSource(LeafSystem):
         self._preview = preview
         # Pose and velocity of a foot are asked for one after the other.
         self._foot_at = lru_cache(maxsize=4)(gait.foot)
-        self._pelvis_at = lru_cache(maxsize=2)(gait.pelvis)
         self._hip_height = skeleton.hip_height
         self._X, self._V = {}, {}
         for side in SIDES:
@@ -58,23 +53,8 @@ class GaitSplineSource(LeafSystem):
                 lambda context, output, side=side: output.set_value(_sole_velocity(self._foot(context, side))),
                 prerequisites_of_calc={self.time_ticket()},
             )
-        self._X_WP = self.DeclareAbstractOutputPort(
-            "X_WP",
-            lambda: Value(RigidTransform()),
-            self._calc_pelvis_pose,
-            prerequisites_of_calc={self.time_ticket()},
-        )
-        self._V_WP = self.DeclareAbstractOutputPort(
-            "V_WP",
-            lambda: Value(SpatialVelocity()),
-            self._calc_pelvis_velocity,
-            prerequisites_of_calc={self.time_ticket()},
-        )
-        self._p_WP = self.DeclareVectorOutputPort(
-            "p_WP",
-            3,
-            lambda context, output: output.SetFromVector(self._pelvis_position(context)),
-            prerequisites_of_calc={self.time_ticket()},
+        self._pelvis_reference = self.DeclareVectorOutputPort(
+            "pelvis_reference", 13, self._calc_pelvis_reference, prerequisites_of_calc={self.time_ticket()}
         )
         self._phase = self.DeclareVectorOutputPort(
             "phase", 2, self._calc_phase, prerequisites_of_calc={self.time_ticket()}
@@ -96,16 +76,13 @@ class GaitSplineSource(LeafSystem):
             foot.position - np.array([0.0, 0.0, below_hips]),
         )
 
-    def _pelvis_position(self, context: Context) -> Array:
-        pelvis = self._pelvis_at(context.get_time())
-        return np.array([pelvis.distance, 0.0, self._hip_height - pelvis.drop])
-
-    def _calc_pelvis_pose(self, context: Context, output: Value) -> None:
-        output.set_value(RigidTransform(self._pelvis_position(context)))
-
-    def _calc_pelvis_velocity(self, context: Context, output: Value) -> None:
-        pelvis = self._pelvis_at(context.get_time())
-        output.set_value(SpatialVelocity(np.zeros(3), np.array([pelvis.speed, 0.0, -pelvis.drop_rate])))
+    def _calc_pelvis_reference(self, context: Context, output: BasicVector) -> None:
+        pelvis = self._gait.pelvis(context.get_time())
+        reference = np.zeros(13)
+        reference[0] = 1.0
+        reference[4], reference[6] = pelvis.distance, self._hip_height - pelvis.drop
+        reference[10], reference[12] = pelvis.speed, -pelvis.drop_rate
+        output.SetFromVector(reference)
 
     def _calc_phase(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector([self._gait.phase(side, context.get_time()) for side in SIDES])
@@ -121,17 +98,9 @@ class GaitSplineSource(LeafSystem):
         """Output V_PRs or V_PLs."""
         return self._V[side]
 
-    def get_pelvis_pose_output_port(self) -> OutputPort:
-        """Output X_WP."""
-        return self._X_WP
-
-    def get_pelvis_velocity_output_port(self) -> OutputPort:
-        """Output V_WP."""
-        return self._V_WP
-
-    def get_pelvis_position_output_port(self) -> OutputPort:
-        """Output p_WP."""
-        return self._p_WP
+    def get_pelvis_reference_output_port(self) -> OutputPort:
+        """Output pelvis_reference."""
+        return self._pelvis_reference
 
     def get_phase_output_port(self) -> OutputPort:
         """Output phase."""

@@ -83,6 +83,7 @@ class PdActuatorBank(LeafSystem):
         self._time_step = plant.time_step()
         self._rates_as_torque = law == "implicit" and plant.time_step() == 0
         self._effort_limits = self._joints.effort_limits if effort_limits is None else effort_limits
+        self._limited = bool(np.isfinite(self._effort_limits).any())
         if plant.time_step() > 0:
             require_stable(plant, kp, kd, law)
         n = len(self._joints.names)
@@ -140,15 +141,15 @@ class PdActuatorBank(LeafSystem):
             desired[desired.size // 2 :] = 0.0
         output.SetFromVector(desired)
 
-    def _law_torque(self, context: Context) -> tuple[Array, Array]:
-        """The law from the measured state, feed-forward included, not yet clipped; and the joint velocities."""
-        desired, state = self._held(context), self._state.Eval(context)
+    def _law_torque(self, context: Context, state: Array) -> Array:
+        """The law from the measured state, feed-forward included, not yet clipped."""
+        desired = self._held(context)
         n = self._kp.size
         q, v = self._joints.positions(state), self._joints.velocities(state)
         tau = pd_torque(q, v, desired[:n], desired[n:], self._kp, self._kd)
         if self._feedforward.HasValue(context):
             tau += self._feedforward.Eval(context)
-        return tau, v
+        return tau
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
         if self._law == "implicit":
@@ -157,10 +158,12 @@ class PdActuatorBank(LeafSystem):
             if self._rates_as_torque:
                 tau += self._kd * self._held(context)[n:]
         else:
-            tau, v = self._law_torque(context)
-            tau = np.clip(tau, -self._effort_limits, self._effort_limits)
+            state = self._state.Eval(context)
+            tau = self._law_torque(context, state)
+            if self._limited:
+                tau = np.clip(tau, -self._effort_limits, self._effort_limits)
             if self._law == "semi_implicit":
-                tau += self._kd * v
+                tau += self._kd * self._joints.velocities(state)
         output.SetFromVector(tau)
 
     def _torque(self, context: Context) -> Array:
@@ -174,7 +177,10 @@ class PdActuatorBank(LeafSystem):
 
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
         # What a semi-implicit joint feels stays a little off the limit: its damping is of the end of the step.
-        tau = self._law_torque(context)[0] if self._law == "semi_implicit" else self._torque(context)
+        if self._law == "semi_implicit":
+            tau = self._law_torque(context, self._state.Eval(context))
+        else:
+            tau = self._torque(context)
         output.SetFromVector((np.abs(tau) >= (1 - 1e-9) * self._effort_limits).astype(float))
 
     def get_desired_state_input_port(self) -> InputPort:

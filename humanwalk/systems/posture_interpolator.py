@@ -1,12 +1,9 @@
 """LeafSystem: desired joint angles between two solutions of the inverse kinematics."""
 
-import numpy as np
-import numpy.typing as npt
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.common.value import Value
+from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
-from humanwalk.control.hermite import hermite_between
-
-Array = npt.NDArray[np.float64]
+from humanwalk.control.hermite import HermitePiece
 
 
 class PostureInterpolator(LeafSystem):
@@ -34,16 +31,26 @@ class PostureInterpolator(LeafSystem):
                 ("next_time", 1),
             )
         }
+        # Samples come ten times as seldom as the plant asks.
+        self._piece = self.DeclareCacheEntry(
+            "piece",
+            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_piece),
+            prerequisites_of_calc={self.all_input_ports_ticket()},
+        )
         self._output = self.DeclareVectorOutputPort(
             "desired_state",
             2 * num_joints,
             self._calc,
-            prerequisites_of_calc={self.time_ticket(), self.all_input_ports_ticket()},
+            prerequisites_of_calc={self.time_ticket(), self._piece.ticket()},
         )
 
-    def _calc(self, context: Context, output: BasicVector) -> None:
+    def _calc_piece(self, context: Context, piece: Value) -> None:
         previous, t0, following, t1 = (port.Eval(context) for port in self._inputs.values())
-        output.SetFromVector(hermite_between(t0[0], previous, t1[0], following, context.get_time()))
+        piece.set_value(HermitePiece.between(t0[0], previous, t1[0], following))
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        piece: HermitePiece = self._piece.Eval(context)
+        output.SetFromVector(piece.at(context.get_time()))
 
     def get_previous_state_input_port(self) -> InputPort:
         """Input previous_state."""

@@ -1,12 +1,15 @@
 """LeafSystem: joint angles and pelvis path out of a recording."""
 
 import numpy as np
-from pydrake.common.value import Value
-from pydrake.math import RigidTransform
-from pydrake.multibody.math import SpatialVelocity
+import numpy.typing as npt
 from pydrake.systems.framework import LeafSystem, OutputPort
 
-from humanwalk.gait.recorded_motion import RecordedMotion
+from humanwalk.gait.recorded_motion import PelvisMotion, RecordedMotion
+
+
+def _floating_base(pelvis: PelvisMotion) -> npt.NDArray[np.float64]:
+    X_WP, V_WP = pelvis
+    return np.concatenate((X_WP.rotation().ToQuaternion().wxyz(), X_WP.translation(), V_WP.get_coeffs()))
 
 
 class RecordedPostureSource(LeafSystem):
@@ -14,9 +17,8 @@ class RecordedPostureSource(LeafSystem):
 
     Outputs:
         desired_state: (2n) desired joint angles [rad], then rates [rad/s], in actuator order.
-        X_WP: RigidTransform, reference pose of the pelvis in the world.
-        V_WP: SpatialVelocity, its time derivative, in W.
-        p_WP: (3) the translation of X_WP [m], for records.
+        pelvis_reference: (13) where the pelvis was in W, as Drake's floating base has it: quaternion wxyz, position
+            [m], angular velocity [rad/s], velocity [m/s].
     """
 
     def __init__(self, motion: RecordedMotion) -> None:
@@ -29,22 +31,10 @@ class RecordedPostureSource(LeafSystem):
             lambda context, output: output.SetFromVector(np.concatenate(motion.joints(context.get_time()))),
             prerequisites_of_calc=when,
         )
-        self._X_WP = self.DeclareAbstractOutputPort(
-            "X_WP",
-            lambda: Value(RigidTransform()),
-            lambda context, output: output.set_value(motion.pelvis(context.get_time()).X_WP),
-            prerequisites_of_calc=when,
-        )
-        self._V_WP = self.DeclareAbstractOutputPort(
-            "V_WP",
-            lambda: Value(SpatialVelocity()),
-            lambda context, output: output.set_value(motion.pelvis(context.get_time()).V_WP),
-            prerequisites_of_calc=when,
-        )
-        self._p_WP = self.DeclareVectorOutputPort(
-            "p_WP",
-            3,
-            lambda context, output: output.SetFromVector(motion.pelvis(context.get_time()).X_WP.translation()),
+        self._pelvis_reference = self.DeclareVectorOutputPort(
+            "pelvis_reference",
+            13,
+            lambda context, output: output.SetFromVector(_floating_base(motion.pelvis(context.get_time()))),
             prerequisites_of_calc=when,
         )
 
@@ -52,14 +42,6 @@ class RecordedPostureSource(LeafSystem):
         """Output desired_state."""
         return self._desired_state
 
-    def get_pelvis_pose_output_port(self) -> OutputPort:
-        """Output X_WP."""
-        return self._X_WP
-
-    def get_pelvis_velocity_output_port(self) -> OutputPort:
-        """Output V_WP."""
-        return self._V_WP
-
-    def get_pelvis_position_output_port(self) -> OutputPort:
-        """Output p_WP."""
-        return self._p_WP
+    def get_pelvis_reference_output_port(self) -> OutputPort:
+        """Output pelvis_reference."""
+        return self._pelvis_reference

@@ -38,7 +38,7 @@ PORTS = {
     "saturated": N,
     "desired_state": 2 * N,
     "ik_status": 6,
-    "pelvis_reference": 3,
+    "pelvis_reference": 13,
     "phase": 2,
     "contact_schedule": 2,
     "soles": 6,
@@ -198,7 +198,7 @@ def test_the_offset_that_is_named_as_a_mend_works():
 )
 def test_variant_walks_the_way_of_the_reference(changes):
     walked = Walked(thesis(*changes), 0.1)
-    np.testing.assert_allclose(walked.pelvis[-1][1:3], walked.value("pelvis_reference")[:2], atol=0.01)
+    np.testing.assert_allclose(walked.pelvis[-1][1:3], walked.value("pelvis_reference")[4:6], atol=0.01)
     assert np.isfinite(walked.value("state")).all()
 
 

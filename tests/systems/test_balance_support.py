@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
-from pydrake.multibody.math import SpatialVelocity
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
-from pydrake.multibody.tree import SpatialInertia, UnitInertia
+from pydrake.multibody.tree import JacobianWrtVariable, SpatialInertia, UnitInertia
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import ConstantValueSource
+from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
 from humanwalk.systems.balance_support import BalanceSupport
@@ -17,6 +15,13 @@ from humanwalk.systems.balance_support import BalanceSupport
 PARAMETERS = BalanceSupportParameters()
 X_REFERENCE = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [1.0, 0.5, 0.9])
 V_REFERENCE = np.array([0.1, 0.2, 0.3, 1.4, 0.0, -0.1])
+
+
+def floating_base(X):
+    return np.concatenate((X.rotation().ToQuaternion().wxyz(), X.translation()))
+
+
+REFERENCE = np.concatenate((floating_base(X_REFERENCE), V_REFERENCE))
 
 
 @pytest.fixture(scope="module")
@@ -33,21 +38,20 @@ def context_of(support, plant, X_WP, V_WP):
     v[start : start + 6] = V_WP
     plant.SetVelocities(plant_context, v)
     context = support.CreateDefaultContext()
-    support.get_reference_pose_input_port().FixValue(context, Value(X_REFERENCE))
-    support.get_reference_velocity_input_port().FixValue(context, Value(SpatialVelocity(V_REFERENCE)))
+    support.get_pelvis_reference_input_port().FixValue(context, REFERENCE)
     support.get_state_input_port().FixValue(context, plant.GetPositionsAndVelocities(plant_context))
     return context
 
 
 def test_ports(support, plant):
     names = [support.get_input_port(i).get_name() for i in range(support.num_input_ports())]
-    assert sorted(names) == ["V_WP", "X_WP", "state"]
-    assert support.get_reference_pose_input_port().get_name() == "X_WP"
-    assert support.get_reference_velocity_input_port().get_name() == "V_WP"
+    assert sorted(names) == ["pelvis_reference", "state"]
+    assert support.get_pelvis_reference_input_port().size() == 13
     assert support.get_state_input_port().size() == plant.num_multibody_states()
     port = support.get_wrench_output_port()
     assert (port.get_name(), port.size()) == ("wrench", 6)
-    assert support.get_spatial_forces_output_port().get_name() == "spatial_forces"
+    port = support.get_generalized_force_output_port()
+    assert (port.get_name(), port.size()) == ("generalized_force", plant.num_velocities())
 
 
 def test_no_wrench_on_the_reference(support, plant):
@@ -58,17 +62,27 @@ def test_no_wrench_on_the_reference(support, plant):
 def test_the_wrench_is_the_law_of_the_pelvis_state(support, plant):
     X_WP = RigidTransform(RollPitchYaw(0.05, 0.25, 0.2), [1.02, 0.49, 0.93])
     V_WP = np.array([0.3, -0.2, 0.1, 1.2, 0.2, 0.0])
-    expected = support_wrench(X_WP, V_WP, X_REFERENCE, V_REFERENCE, PARAMETERS)
+    expected = support_wrench(floating_base(X_WP), V_WP, REFERENCE, PARAMETERS)
     context = context_of(support, plant, X_WP, V_WP)
     np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), expected, rtol=1e-9)
 
 
-def test_the_wrench_shown_is_the_force_on_the_pelvis_at_its_origin(support, plant):
-    context = context_of(support, plant, RigidTransform([1.1, 0.4, 1.0]), np.zeros(6))
-    (force,) = support.get_spatial_forces_output_port().Eval(context)
-    assert force.body_index == plant.GetBodyByName("Pelvis").index()
-    np.testing.assert_array_equal(force.p_BoBq_B, 0.0)
-    np.testing.assert_array_equal(force.F_Bq_W.get_coeffs(), support.get_wrench_output_port().Eval(context))
+def test_the_generalized_force_is_the_wrench_on_the_pelvis_at_its_origin(support, plant):
+    X_WP = RigidTransform(RollPitchYaw(0.3, -0.2, 0.5), [1.1, 0.4, 1.0])
+    context = context_of(support, plant, X_WP, np.zeros(6))
+    plant_context = plant.CreateDefaultContext()
+    pelvis = plant.GetBodyByName("Pelvis")
+    plant.SetFloatingBaseBodyPoseInWorldFrame(plant_context, pelvis, X_WP)
+    J = plant.CalcJacobianSpatialVelocity(
+        plant_context,
+        JacobianWrtVariable.kV,
+        pelvis.body_frame(),
+        np.zeros(3),
+        plant.world_frame(),
+        plant.world_frame(),
+    )
+    wrench = support.get_wrench_output_port().Eval(context)
+    np.testing.assert_allclose(support.get_generalized_force_output_port().Eval(context), J.T @ wrench, atol=1e-9)
 
 
 def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
@@ -91,14 +105,12 @@ def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
     )
     plant.Finalize()
     support = builder.AddSystem(BalanceSupport(plant, PARAMETERS))
-    for value, port in (
-        (RigidTransform(), support.get_reference_pose_input_port()),
-        (SpatialVelocity.Zero(), support.get_reference_velocity_input_port()),
-    ):
-        source = builder.AddSystem(ConstantValueSource(Value(value)))
-        builder.Connect(source.get_output_port(), port)
+    reference = np.zeros(13)
+    reference[0] = 1.0
+    source = builder.AddSystem(ConstantVectorSource(reference))
+    builder.Connect(source.get_output_port(), support.get_pelvis_reference_input_port())
     builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-    builder.Connect(support.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+    builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(1.5)
     X_WP = plant.EvalBodyPoseInWorld(plant.GetMyContextFromRoot(simulator.get_context()), pelvis)

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydrake.common.eigen_geometry import Quaternion
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialVelocity
 
 from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.systems.gait_spline_source import GaitSplineSource
@@ -20,15 +23,22 @@ def source(gait, skeleton):
 
 @pytest.fixture(scope="module")
 def at(source):
-    """Every output by name at a time [s]; from a new context, since Eval hands out the cache's own objects."""
+    """Every output by name at a time [s], with X_WP and V_WP out of pelvis_reference.
+
+    Each time from a new context, since Eval hands out the cache's own objects.
+    """
 
     def outputs(t):
         context = source.CreateDefaultContext()
         context.SetTime(t)
-        return {
+        found = {
             source.get_output_port(i).get_name(): source.get_output_port(i).Eval(context)
             for i in range(source.num_output_ports())
         }
+        reference = found["pelvis_reference"]
+        found["X_WP"] = RigidTransform(Quaternion(reference[:4]), reference[4:7])
+        found["V_WP"] = SpatialVelocity(reference[7:])
+        return found
 
     return outputs
 
@@ -36,12 +46,12 @@ def at(source):
 def test_ports(source):
     assert source.num_input_ports() == 0
     names = {source.get_output_port(i).get_name() for i in range(source.num_output_ports())}
-    assert names == {"X_PRs", "X_PLs", "V_PRs", "V_PLs", "X_WP", "V_WP", "p_WP", "phase", "contact_schedule"}
+    assert names == {"X_PRs", "X_PLs", "V_PRs", "V_PLs", "pelvis_reference", "phase", "contact_schedule"}
     for side in SIDES:
         assert source.get_sole_pose_output_port(side).get_name() == f"X_P{side[0]}s"
         assert source.get_sole_velocity_output_port(side).get_name() == f"V_P{side[0]}s"
-    assert source.get_pelvis_pose_output_port().get_name() == "X_WP"
-    assert source.get_pelvis_velocity_output_port().get_name() == "V_WP"
+    pelvis = source.get_pelvis_reference_output_port()
+    assert (pelvis.get_name(), pelvis.size()) == ("pelvis_reference", 13)
     assert (source.get_phase_output_port().get_name(), source.get_phase_output_port().size()) == ("phase", 2)
     assert source.get_contact_schedule_output_port().get_name() == "contact_schedule"
     assert source.get_contact_schedule_output_port().size() == 2
@@ -128,5 +138,5 @@ def test_a_preview_is_of_the_soles_alone(source, gait, skeleton, preview, t):
         np.testing.assert_array_equal(value(ahead, f"X_P{side}s", t).GetAsMatrix4(), later.GetAsMatrix4())
         later = value(source, f"V_P{side}s", t + preview)
         np.testing.assert_array_equal(value(ahead, f"V_P{side}s", t).get_coeffs(), later.get_coeffs())
-    np.testing.assert_array_equal(value(ahead, "p_WP", t), value(source, "p_WP", t))
+    np.testing.assert_array_equal(value(ahead, "pelvis_reference", t), value(source, "pelvis_reference", t))
     np.testing.assert_array_equal(value(ahead, "phase", t), value(source, "phase", t))

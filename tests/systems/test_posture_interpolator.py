@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.control.hermite import hermite_between
+from humanwalk.control.hermite import HermitePiece
 from humanwalk.systems.posture_interpolator import PostureInterpolator
 
 N = 3
@@ -36,7 +36,7 @@ def test_ports():
 def test_desired_state_is_the_cubic_through_the_samples(t):
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, t)
-    expected = hermite_between(0.10, X0, 0.12, X1, t)
+    expected = HermitePiece.between(0.10, X0, 0.12, X1).at(t)
     np.testing.assert_array_equal(interpolator.get_desired_state_output_port().Eval(context), expected)
 
 
@@ -47,3 +47,12 @@ def test_time_moves_it():
     np.testing.assert_allclose(port.Eval(context), X0)
     context.SetTime(0.12)
     np.testing.assert_allclose(port.Eval(context), X1)
+
+
+def test_new_samples_make_a_new_piece():
+    interpolator = PostureInterpolator(N)
+    context = context_at(interpolator, 0.12)
+    port = interpolator.get_desired_state_output_port()
+    np.testing.assert_allclose(port.Eval(context), X1)
+    interpolator.get_next_state_input_port().FixValue(context, 2 * X1)
+    np.testing.assert_allclose(port.Eval(context), 2 * X1)
