@@ -40,10 +40,11 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     Raises:
         ParameterError: the scenario's start cannot be reached, or it asks for what this walker cannot do.
     """
-    if scenario.simulation.integrator != "discrete" or scenario.actuators.law != "implicit":
+    law = scenario.actuators.law
+    if scenario.simulation.integrator != "discrete" or law == "explicit":
         raise ParameterError(
-            "controller: balanced needs the discrete plant and its implicit actuators; allowed: "
-            "simulation.integrator: discrete with actuators.law: implicit; set both"
+            "controller: balanced needs the discrete plant, and actuators that it damps; allowed: "
+            "simulation.integrator: discrete with actuators.law: semi_implicit or implicit; set both"
         )
     builder = DiagramBuilder()
     human = add_human_plant(builder, scenario)
@@ -66,7 +67,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         "controller",
         WholeBodyController(model, scenario.subject.skeleton, walk.whole_body, posture, walk.control_period),
     )
-    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd))
+    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
     pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
     feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
@@ -84,7 +85,8 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
-    builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
+    if law == "implicit":
+        builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
     builder.Connect(pushes.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
 
     for port, name in (
