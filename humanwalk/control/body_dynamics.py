@@ -20,6 +20,19 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class Directions:
+    """Directions d in W, shape (k, 3), and the linear map from an arm r to all moments r x d, shape (3, 3 k)."""
+
+    d_W: Array
+    moments: Array
+
+    @staticmethod
+    def of(d_W: Array) -> Directions:
+        """The directions of the rows of an array."""
+        return Directions(d_W, np.hstack([_cross_matrix(d) for d in d_W]))
+
+
+@dataclass(frozen=True)
 class FrameMotion:
     """A body frame B: pose, velocity, and acceleration = J v' + bias, all [angular; translational] in W.
 
@@ -42,10 +55,18 @@ class FrameMotion:
         bias = self.bias[3:] - cross @ self.bias[:3] + _cross_matrix(w) @ _cross_matrix(w) @ r
         return self.p_WB + r, J, velocity, bias
 
-    def along(self, p_BoP_B: Array, directions: Array) -> Array:
-        """Jacobian of the velocities of P along k directions given in W, (k, 3); shape (k, nv)."""
-        moments = directions @ _cross_matrix(self.R_WB @ p_BoP_B).T
-        return directions @ self.J[3:] + moments @ self.J[:3]
+    def along(self, points: Array, directions: Directions) -> Array:
+        """Jacobian of the velocities of points along directions; shape (points x directions, nv).
+
+        Args:
+            points: fixed to B, in B, shape (k, 3) [m].
+            directions: the same at every point.
+        """
+        moments = (points @ self.R_WB.T) @ directions.moments
+        J = (moments.reshape(-1, 3) @ self.J[:3]).reshape(len(points), len(directions.d_W), -1)
+        J += directions.d_W @ self.J[3:]
+        along: Array = J.reshape(-1, J.shape[-1])
+        return along
 
 
 @dataclass(frozen=True)
@@ -109,14 +130,11 @@ class BodyDynamics:
 
     def _frame(self, name: str, v: Array) -> FrameMotion:
         plant, context, frame = self.plant, self._context, self._frames[name]
-        pose = frame.CalcPoseInWorld(context)
-        J = plant.CalcJacobianSpatialVelocity(
-            context, JacobianWrtVariable.kV, frame, np.zeros(3), self._world, self._world
-        )
-        bias = plant.CalcBiasSpatialAcceleration(
-            context, JacobianWrtVariable.kV, frame, np.zeros(3), self._world, self._world
-        )
-        return FrameMotion(pose.rotation().matrix(), pose.translation(), J, J @ v, bias.get_coeffs())
+        X_WB = frame.CalcPoseInWorld(context).GetAsMatrix34()
+        of_origin = (context, JacobianWrtVariable.kV, frame, np.zeros(3), self._world, self._world)
+        J = plant.CalcJacobianSpatialVelocity(*of_origin)
+        bias = plant.CalcBiasSpatialAcceleration(*of_origin)
+        return FrameMotion(X_WB[:, :3], X_WB[:, 3], J, J @ v, bias.get_coeffs())
 
     def body_state(self, state: Array, time: float, foot_forces: dict[Side, float]) -> BodyState:
         """What the step planner wants to know, from a plant state [q; v] and the feet's vertical forces [N]."""
@@ -129,10 +147,9 @@ class BodyDynamics:
 
     def _foot_state(self, side: Side, force: float) -> FootState:
         frame = self._frames[f"{side}Leg_Ankle"]
-        pose = frame.CalcPoseInWorld(self._context)
-        velocity = frame.CalcSpatialVelocityInWorld(self._context)
-        R, p = pose.rotation().matrix(), pose.translation()
-        w, v = velocity.rotational(), velocity.translational()
+        X_WB = frame.CalcPoseInWorld(self._context).GetAsMatrix34()
+        V_WB = frame.CalcSpatialVelocityInWorld(self._context).get_coeffs()
+        R, p, w, v = X_WB[:, :3], X_WB[:, 3], V_WB[:3], V_WB[3:]
         yaw = math.atan2(R[1, 0], R[0, 0])
         return FootState(
             position=complex(p[0], p[1]),

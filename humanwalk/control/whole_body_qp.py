@@ -16,7 +16,7 @@ from proxsuite import proxqp
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.body_dynamics import BodyDynamics, Dynamics, FrameMotion
+from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics, FrameMotion
 from humanwalk.control.step_planner import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
@@ -148,7 +148,7 @@ class SolePoints:
     side: Side
     body: str
     points: Array
-    places: tuple[int, ...]
+    places: Indices
 
     @property
     def is_heel(self) -> bool:
@@ -161,8 +161,8 @@ def _soles(spheres: Sequence[ContactSphere]) -> tuple[SolePoints, ...]:
     soles = []
     for side in SIDES:
         for body in FOOT_BODIES[side]:
-            places = tuple(i for i, sphere in enumerate(spheres) if sphere.body == body)
-            soles.append(SolePoints(side, body, lowest[list(places)], places))
+            places = np.array([i for i, sphere in enumerate(spheres) if sphere.body == body])
+            soles.append(SolePoints(side, body, lowest[places], places))
     return tuple(soles)
 
 
@@ -219,7 +219,7 @@ class WholeBodyQp:
         self._soles = _soles(spheres)
         self._heel = {sole.side: sole.points.mean(axis=0) for sole in self._soles if sole.is_heel}
         mu = parameters.friction
-        self._edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
+        self._edges = Directions.of(np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float))
         self._solvers: dict[int, Any] = {}
         # Drake keeps systems to the end of the process, and proxsuite's binding complains of solvers that live so long.
         weakref.finalize(self, self._solvers.clear)
@@ -255,7 +255,7 @@ class WholeBodyQp:
         edge_forces = np.maximum(x[m:], 0.0)
         torque = (body.M @ qdd + body.h - B.T @ edge_forces)[6:]
         forces = np.zeros((sum(len(sole.places) for sole in self._soles), 3))
-        forces[points] = edge_forces.reshape(-1, 4) @ self._edges
+        forces[points] = edge_forces.reshape(-1, 4) @ self._edges.d_W
         return WholeBodySolution(qdd, forces, np.clip(torque, -self.limits, self.limits))
 
     def program(
@@ -292,26 +292,19 @@ class WholeBodyQp:
         g[:m] = -(a @ WJ)
         g[6:m] -= weight[free_joints] * wanted[free_joints]
 
-        rest = body.h + body.M @ qdd0
-        A = np.hstack((body.M[:6, self._free], -B[:, :6].T))
-        rows = free_joints + 6
-        C = np.hstack((body.M[np.ix_(rows, self._free)], -B[:, rows].T))
+        # The equations of motion M v' + h - B' f = tau: of the base, whose tau is 0, and of the joints.
+        motion = np.empty((m, m + k))
+        motion[:, :m] = body.M[self._free[:, None], self._free]
+        motion[:, m:] = -B[:, self._free].T
+        rest = (body.h + body.M @ qdd0)[self._free]
+        limits = self.limits[free_joints]
         x_lower, x_upper = np.full(m + k, -1e4), np.full(m + k, 1e4)
-        toward_lower = p.range_stiffness * (self.lower - q) - p.range_damping * v
-        toward_upper = p.range_stiffness * (self.upper - q) - p.range_damping * v
-        x_lower[6:m] = np.clip(toward_lower[free_joints], -1e4, 1e3)
-        x_upper[6:m] = np.clip(toward_upper[free_joints], -1e3, 1e4)
+        slowing = p.range_damping * v
+        x_lower[6:m] = np.minimum(p.range_stiffness * (self.lower - q) - slowing, 1e3)[free_joints]
+        x_upper[6:m] = np.maximum(p.range_stiffness * (self.upper - q) - slowing, -1e3)[free_joints]
         x_lower[m:], x_upper[m:] = 0.0, most
         program = QuadraticProgram(
-            H,
-            g,
-            A,
-            -rest[:6],
-            C,
-            -self.limits[free_joints] - rest[rows],
-            self.limits[free_joints] - rest[rows],
-            x_lower,
-            x_upper,
+            H, g, motion[:6], -rest[:6], motion[6:], -limits - rest[6:], limits - rest[6:], x_lower, x_upper
         )
         return program, qdd0, B, points
 
@@ -424,14 +417,14 @@ class WholeBodyQp:
             if foot.load <= 0.0 or (foot.task is FootTask.HEEL_OFF and sole.is_heel):
                 continue
             frame = body.frames[sole.body]
-            low = frame.p_WB[2] + sole.points @ frame.R_WB[2] < p.contact_height
-            for place, p_BoP, is_low in zip(sole.places, sole.points, low, strict=True):
-                if is_low:
-                    places.append(place)
-                    blocks.append(frame.along(p_BoP, self._edges))
-                    most.append(p.largest_force * foot.load)
-        B = np.vstack(blocks) if blocks else np.zeros((0, body.v.size))
-        return np.array(places, dtype=int), B, np.repeat(most, 4)
+            low = np.flatnonzero(frame.p_WB[2] + sole.points @ frame.R_WB[2] < p.contact_height)
+            if low.size:
+                places.append(sole.places[low])
+                blocks.append(frame.along(sole.points[low], self._edges))
+                most.append(np.full(4 * low.size, p.largest_force * foot.load))
+        if not places:
+            return np.zeros(0, dtype=int), np.zeros((0, body.v.size)), np.zeros(0)
+        return np.concatenate(places), np.concatenate(blocks), np.concatenate(most)
 
 
 def is_foot_posture(joint_name: str) -> bool:
