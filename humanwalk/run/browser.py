@@ -45,8 +45,9 @@ HAS_WEBGL = "() => document.createElement('canvas').getContext('webgl2') !== nul
 LOADED = "() => typeof viewer !== 'undefined' && viewer.animator.duration > 0"
 
 # Meshcat's own loop stops: nothing moves or is drawn but when a still is taken, and the canvas leaves the page, which
-# would be drawn once more around it. Software WebGL pays for every triangle and every soft shadow: shadows become
-# hard, on a map just around the walker, and what is small on the picture gets fewer triangles. y is up in three.js.
+# would be drawn once more around it. Software WebGL pays for every triangle, highlight and soft shadow: materials are
+# dull, shadows hard, on a map just around the walker, and what is small on the picture gets fewer triangles. y is up
+# in three.js.
 HOLD = """() => {
     viewer.animator.pause();
     viewer.animate = () => {};
@@ -58,7 +59,10 @@ HOLD = """() => {
     const pixelsPerMetre = innerHeight / 2.4;
     viewer.scene.updateMatrixWorld(true);
     viewer.scene.traverse(object => {
-        if (object.material) object.material.needsUpdate = true;
+        if (object.isMesh) {
+            const {color, map, transparent, opacity, side} = object.material;
+            object.material = new THREE.MeshLambertMaterial({color, map, transparent, opacity, side});
+        }
         if (object.isMesh && object.castShadow) {
             object.geometry.computeBoundingSphere();
             const radius = object.geometry.boundingSphere.radius * object.matrixWorld.getMaxScaleOnAxis();
