@@ -9,7 +9,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder
 from humanwalk.run.folder import Run
 from humanwalk.run.plots.drawing import FORMATS, save
-from humanwalk.run.plots.gait_cycle import gait_cycle_angles, joint_power
+from humanwalk.run.plots.gait_cycle import gait_cycle_angles, gait_cycle_pelvis, joint_power
 from humanwalk.run.plots.ground import centre_of_pressure, ground_reaction
 from humanwalk.run.plots.joints import joint_torques, tracking_error
 from humanwalk.run.plots.support import support_force, support_torque
@@ -19,6 +19,7 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "support_force": support_force,
     "support_torque": support_torque,
     "gait_cycle_angles": gait_cycle_angles,
+    "gait_cycle_pelvis": gait_cycle_pelvis,
     "joint_power": joint_power,
     "ground_reaction": ground_reaction,
     "centre_of_pressure": centre_of_pressure,
