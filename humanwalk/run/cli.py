@@ -1,4 +1,4 @@
-"""The command line: humanwalk walk, replay, video, snapshot, plot, scenarios, model, diagram."""
+"""The command line: one function a command."""
 
 import logging
 import sys
@@ -180,6 +180,30 @@ def plot(
         console.print(f"{path}", soft_wrap=True)
     if not written:
         console.print(f"{run}: nothing to draw of what was asked for", soft_wrap=True)
+
+
+@app.command(epilog="Examples: humanwalk report runs/walk  |  humanwalk report runs/walk --json > walk.json")
+def report(
+    run: Annotated[Path, typer.Argument(help="Folder of a run that walks straight ahead.")],
+    json_: Annotated[
+        bool, typer.Option("--json", help="Print the numbers of every stride instead of the tables; write no page.")
+    ] = False,
+) -> None:
+    """Compare a run with people, stride by stride, and write report.html into its folder."""
+    import json
+
+    from humanwalk.run.folder import Run
+    from humanwalk.run.report import compare_run, terminal_tables, to_json, write_report
+
+    opened = Run.open(run)
+    comparison = compare_run(opened)
+    if json_:
+        print(json.dumps(to_json(comparison), indent=2, allow_nan=False))
+        return
+    path = write_report(opened, comparison)
+    for table in terminal_tables(comparison):
+        Console(markup=False).print(table)
+    console.print(f"{path}", soft_wrap=True)
 
 
 @app.command(

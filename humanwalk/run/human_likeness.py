@@ -172,7 +172,7 @@ class Measure:
     """A measure of a walk beside people's.
 
     Attributes:
-        name, unit: what it is; "" for a pure number.
+        name, unit: what it is; "" for a pure number, BW for body weights.
         values: one for each step, stride or stance of both legs; a single one for a measure of the whole walk.
         people: None where no source is known.
     """
@@ -282,16 +282,16 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls]
     def each(measure: Callable[[Side, Footfalls], Array]) -> Array:
         return np.concatenate([measure(side, foot) for side, foot in feet.items()])
 
-    free = f"{PERRY}, women and men at the speed of their choice"
+    free = f"{PERRY}, women and men at their own speed"
     speeds = each(lambda side, foot: stride_lengths(signals, side, foot) / stride_times(signals, foot))
     yield Measure("speed", "m/s", speeds, People(1.28, 1.43, free))
     lengths = each(lambda side, foot: step_lengths(signals, side, foot))
     yield Measure("step length", "m", lengths, People(0.64, 0.73, free))
     yield Measure("cadence", "1/min", np.array([cadence(signals, feet)]), People(111.0, 117.0, free))
     stances = each(lambda side, foot: stance_shares(signals, foot))
-    yield Measure("stance, share of stride", "", stances, People(0.60, 0.62, PERRY))
+    yield Measure("share of stance", "", stances, People(0.60, 0.62, PERRY))
     both = each(lambda side, foot: double_support_shares(foot, feet[other_side(side)]))
-    yield Measure("double support, share of stride", "", both, People(0.20, 0.24, PERRY))
+    yield Measure("share of double support", "", both, People(0.20, 0.24, PERRY))
     wanted = PREFERRED_STEP_WIDTH * leg
     widths = each(lambda side, foot: step_widths(signals, side, foot))
     yield Measure("step width", "m", widths, People(wanted, wanted, f"{DONELAN}: 0.13 of the leg's length"))
@@ -304,14 +304,16 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls]
     humps = np.concatenate([force_humps(signals, side, foot, weight) for side, foot in feet.items()])
     names = {"first hump": 1.1, "dip": 0.8, "second hump": 1.1}
     for column, (name, share) in zip(humps.T, names.items(), strict=True):
-        yield Measure(f"ground force, {name}", "body weights", column, People(share, share, PERRY))
-    yield Measure("stances with two humps, share", "", np.array([has_two_humps(humps).mean()]), People(1.0, 1.0, PERRY))
+        yield Measure(f"ground force, {name}", "BW", column, People(share, share, PERRY))
+    yield Measure(
+        "share of stances with two humps", "", np.array([has_two_humps(humps).mean()]), People(1.0, 1.0, PERRY)
+    )
 
     knee = ANGLES["knee"]
     least = each(lambda side, foot: late_stance_knee(over_strides(signals, foot, knee.of(signals, side))))
-    yield Measure("least knee flexion in terminal stance", "deg", least, _people_late_stance_knee())
+    yield Measure("least knee flexion, terminal stance", "deg", least, _people_late_stance_knee())
     cost = cost_of_transport(signals, time >= begin, mass)
-    yield Measure("cost of transport, sum of |torque x rate|", "", np.array([np.nan if cost is None else cost]))
+    yield Measure("cost of transport", "", np.array([np.nan if cost is None else cost]))
     for joint, motion, flexing, extending in (
         ("hip", "LegFemurMotion", "flexion", "extension"),
         ("knee", "LegTibiaMotion", "flexion", "extension"),
@@ -319,7 +321,7 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls]
     ):
         for name, sign in ((flexing, 1), (extending, -1)):
             peaks = each(partial(peak_moments, signals, motion, sign)) / mass
-            yield Measure(f"peak moment, {joint} {name}", "N m/kg", peaks)
+            yield Measure(f"moment, {joint} {name}", "N m/kg", peaks)
 
 
 def _people_late_stance_knee() -> People:
