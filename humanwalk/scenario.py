@@ -291,7 +291,10 @@ def _read_text(path: Path, name: str, allowed: str) -> str:
 
 def _read_yaml(text: str, name: str) -> dict[str, Any]:
     try:
+        _require_keys_once(yaml.compose(text, Loader=yaml.SafeLoader), name)
         data = yaml_load(data=text, private=True) if text.strip() else {}
+    except ParameterError:
+        raise
     except (yaml.YAMLError, ValueError, AttributeError, RecursionError) as error:
         # PyYAML lets an AttributeError out of a bad !!timestamp.
         mark = getattr(error, "problem_mark", None)
@@ -304,6 +307,31 @@ def _read_yaml(text: str, name: str) -> dict[str, Any]:
         raise ParameterError(f"{name}: a scenario is a mapping of fields, like `duration: 15`")
     # Root keys that begin with an underscore hold anchors, as everywhere in Drake; a tag is no such key.
     return {key: value for key, value in data.items() if key == "_tag" or not str(key).startswith("_")}
+
+
+def _require_keys_once(root: yaml.Node | None, name: str) -> None:
+    """Raise ParameterError where a mapping has a key twice: YAML readers keep the last without a word."""
+    waiting, seen = [root], set()
+    while waiting:
+        node = waiting.pop()
+        # An anchor may stand in many places, and contain itself.
+        if not isinstance(node, yaml.CollectionNode) or id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            waiting.extend(node.value)
+            continue
+        lines: dict[str, int] = {}
+        for key, entry in node.value:
+            waiting.extend((key, entry))
+            if isinstance(key, yaml.ScalarNode):
+                line = key.start_mark.line + 1
+                if key.value in lines:
+                    raise ParameterError(
+                        f"{name}: {_shown(key.value)} comes twice, at lines {lines[key.value]} and {line}; allowed: "
+                        "every field once in its group; remove one"
+                    )
+                lines[key.value] = line
 
 
 def _read_scalar(value: str, key: str) -> Any:
