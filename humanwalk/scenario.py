@@ -239,7 +239,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     shipped = shipped_scenarios()
     path = shipped.get(str(name_or_path), Path(name_or_path))
     text = _read_text(path, f"scenario: {name_or_path}", f"{', '.join(shipped)}, or the path of a YAML file")
-    return parse_scenario(text, overrides, name=path.name)
+    return parse_scenario(text, overrides, name=path.name, folder=path.parent)
 
 
 def load_as[T](kind: type[T], path: Path) -> T:
@@ -258,9 +258,16 @@ def load_as[T](kind: type[T], path: Path) -> T:
     return parameters
 
 
-def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario") -> Scenario:
-    """Scenario from YAML text; see `load_scenario`."""
+def parse_scenario(
+    text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario", folder: Path = Path()
+) -> Scenario:
+    """Scenario from YAML text; see `load_scenario`. Files that the text names stand in `folder`, if not elsewhere."""
     data = _read_yaml(text, name)
+    follow = data.get("follow")
+    if isinstance(follow, dict):
+        for key in ("file", "mapping"):
+            if isinstance(follow.get(key), str) and follow[key]:
+                follow[key] = str(folder / follow[key])
     for key, value in (overrides or {}).items():
         _override(data, key, _read_scalar(value, key))
     scenario = _build(Scenario, data, "")

@@ -6,8 +6,8 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +35,9 @@ SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
+RECORDING = "recording"
+MAPPING = "mapping.yaml"
+"""Copies of what the run followed; the recording has its own suffix."""
 
 SIGNALS_BYTES_PER_ROW = 2600
 REPLAY_BYTES_PER_FRAME = 11_000
@@ -187,6 +190,8 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     rows = scenario.duration / scenario.recording.signal_period
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
+    with suppress(OSError):
+        needed += Path(scenario.follow.file).stat().st_size if scenario.follow.file else 0
     free = shutil.disk_usage(folder).free
     if free < needed:
         raise ParameterError(
@@ -206,12 +211,28 @@ def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
 def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
     """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all.
 
-    The summary comes last: a folder that has one is a complete run.
+    The summary comes last: a folder that has one is a complete run. What was followed is copied into the folder, and
+    followed there by whoever reads the run.
     """
     summary = measure(outcome, scenario_name)
     metadata = {b"humanwalk": json.dumps({"scenario": scenario_name} | summary["provenance"]).encode()}
     signals = outcome.signals.replace_schema_metadata(metadata)
-    write_text(path / SCENARIO, dump_scenario(outcome.scenario))
+    write_text(path / SCENARIO, dump_scenario(_keep_followed(path, outcome.scenario)))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
     write_text(path / SUMMARY, json.dumps(summary, indent=2) + "\n")
     return Run(path)
+
+
+def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
+    """Copy the recording and the mapping that a scenario follows; returns the scenario that follows the copies."""
+    follow = scenario.follow
+    kept: dict[str, Any] = {}
+    names = {"file": RECORDING + Path(follow.file).suffix.lower(), "mapping": MAPPING}
+    for field, name in names.items():
+        followed = getattr(follow, field)
+        # One that was moved while it was simulated stays where it was; a checkpoint has copied it before.
+        if followed and Path(followed).is_file():
+            if not (path / name).exists():
+                write_whole(path / name, partial(shutil.copyfile, followed))
+            kept[field] = name
+    return replace(scenario, follow=replace(follow, **kept))
