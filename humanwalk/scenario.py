@@ -206,6 +206,15 @@ class Scenario:
                 "follow.file: a recording is followed joint by joint, which balance.foot_force and balance.upper_body "
                 "would change; allowed: with balance.support or nothing; set their enabled: false"
             )
+        if self.follow.file and self.controller == "balanced":
+            raise ParameterError(
+                "follow.file: a recording is not followed on the walker's own feet; allowed: with controller thesis, "
+                "whose pelvis is supported; set controller: thesis"
+            )
+        if self.follow.kinematic and not self.follow.file:
+            raise ParameterError(
+                "follow.kinematic: true without a recording; allowed: with follow.file; name the recording (--follow)"
+            )
         simulation = self.simulation
         if simulation.integrator == "cenic" and simulation.time_step != 0:
             raise ParameterError(

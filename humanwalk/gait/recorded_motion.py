@@ -26,6 +26,9 @@ class FollowParameters:
     """A YAML file, beside the scenario's as well, that says which column is which joint and in what unit
     (`MotionMapping`); none: by name."""
 
+    kinematic: bool = False
+    """Show the recording as it is, without physics: no forces, no torques, no balance."""
+
     ease_in: float = quantity(0.3, "s", 0.0, 5.0)
     """Time over which the recording gets up to speed, since the body starts at rest."""
 

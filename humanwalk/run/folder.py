@@ -83,6 +83,14 @@ class Run:
         summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
         return summary
 
+    def require_physics(self) -> None:
+        """Raise ParameterError unless there are torques and forces."""
+        if self.scenario.follow.kinematic:
+            raise ParameterError(
+                f"{self.path}: a kinematic run has no forces and no torques; allowed: one with physics; walk again "
+                "without --kinematic"
+            )
+
     @property
     def units(self) -> dict[str, str]:
         """Unit of every signal, "" for a pure number."""
@@ -106,8 +114,9 @@ class Run:
         """A plot of the run by its name, as a matplotlib figure; a notebook shows it.
 
         Raises:
-            ParameterError: no such plot, or the run has nothing to draw for it.
+            ParameterError: no such plot, or the run has nothing to draw for it, or no physics.
         """
+        self.require_physics()
         # Plots draw runs.
         from humanwalk.run.plots import PLOTS as DRAWINGS
 
@@ -203,7 +212,8 @@ def require_room(folder: Path, scenario: Scenario) -> None:
 def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     """Everything that summary.json says of a simulation."""
     summary = summarize(outcome, scenario_name)
-    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario))
+    physics = summary["physics"]
+    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario)) if physics else None
     summary["provenance"] = provenance(outcome.scenario, outcome.signals)
     return summary
 

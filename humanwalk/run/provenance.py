@@ -35,7 +35,8 @@ def versions() -> dict[str, str]:
 
 def scenario_hash(scenario: Scenario) -> str:
     """Of the complete scenario as it is written down, but for where the files are that it follows."""
-    nowhere = replace(scenario.follow, file="", mapping="")
+    follow = scenario.follow
+    nowhere = replace(follow, file=follow.file and "recording", mapping=follow.mapping and "mapping")
     return hashlib.sha256(dump_scenario(replace(scenario, follow=nowhere)).encode()).hexdigest()
 
 

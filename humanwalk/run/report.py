@@ -45,8 +45,9 @@ def compare_run(run: Run) -> Comparison:
     """Compare a run with people.
 
     Raises:
-        ParameterError: it did not stay up, or has no straight walk of some strides.
+        ParameterError: it did not stay up, has no physics, or has no straight walk of some strides.
     """
+    run.require_physics()
     end = run.summary["end"]
     if end not in UP_AT_ITS_END:
         raise ParameterError(

@@ -132,6 +132,92 @@ def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
     assert run.summary["provenance"]["recording_sha256"] is None
 
 
+# Without physics.
+
+
+@pytest.fixture(scope="module")
+def kinematic(tmp_path_factory):
+    """The run of a recording that is shown without physics, and what was printed."""
+    folder = tmp_path_factory.mktemp("kinematic")
+    recording = write_mot(folder / "t.mot", bend())
+    result = CliRunner().invoke(app, ["walk", "--follow", str(recording), "--kinematic", "-o", str(folder / "run")])
+    assert result.exit_code == 0, result.output
+    return Run.open(folder / "run"), result.stderr
+
+
+def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
+    run, printed = kinematic
+    assert "no physics" in printed
+    assert {entry.name for entry in run.path.iterdir()} == {
+        "scenario.yaml",
+        "signals.parquet",
+        "summary.json",
+        "recording.mot",
+        "replay.html",
+    }
+    assert run.summary["physics"] is False
+    assert run.summary["end"] == "completed"
+
+
+def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
+    run, _ = kinematic
+    motion = followed_motion(run.scenario)
+    for row in (0, 20, -1):
+        angles, rates = motion.joints(run.time[row])
+        for i, name in enumerate(joints.names):
+            assert run[f"{name}.angle"][row] == angles[i]
+            assert run[f"{name}.velocity"][row] == rates[i]
+        pelvis = motion.pelvis(run.time[row])
+        place = [run[f"pelvis.{axis}"][row] for axis in "xyz"]
+        np.testing.assert_allclose(place, pelvis.X_WP.translation(), atol=1e-15)
+    assert np.rad2deg(run["RightLegTibiaMotion.angle"][-1]) > 5.0
+
+
+def test_kinematic_run_claims_no_force_torque_or_effort(kinematic):
+    run, _ = kinematic
+    assert [name for name in run.signals.column_names if name.endswith(("_N", "_N_m", "saturated", "loaded"))] == []
+    summary = run.summary
+    assert summary["peak_torque_N_m"] == summary["saturated_share"] == {}
+    assert summary["external_support"] is False
+    for key in ("cost_of_transport", "steps", "gait"):
+        assert summary[key] is None
+    assert summary["foot_lift_m"] == {"right": None, "left": None}
+
+
+@pytest.mark.parametrize(
+    "command", [("plot",), ("report",), ("export", "--to", "opensim"), ("export", "--to", "c3d")], ids=str
+)
+def test_what_needs_forces_refuses_a_kinematic_run_in_a_line(kinematic, command):
+    run, _ = kinematic
+    with pytest.raises(ParameterError, match="a kinematic run has no forces and no torques; allowed"):
+        CliRunner().invoke(app, [command[0], str(run.path), *command[1:]], catch_exceptions=False)
+
+
+def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
+    run, _ = kinematic
+    result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    assert reproduce(run).bits_agree
+
+
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        ({"follow.kinematic": "true"}, "follow.kinematic: true without a recording"),
+        ({"follow.file": "t.mot", "controller": "balanced"}, "allowed: with controller thesis"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(overrides, said):
+    with pytest.raises(ParameterError, match=said):
+        load_scenario("thesis", overrides)
+
+
+def test_kinematic_without_a_recording_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="--kinematic: is for a recording"):
+        CliRunner().invoke(app, ["walk", "--kinematic", "-o", str(tmp_path / "run")], catch_exceptions=False)
+    assert not (tmp_path / "run").exists()
+
+
 # Angles beyond a joint's range.
 
 

@@ -41,11 +41,12 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
         What was written; a plot for which the run has nothing to draw (no support, no stride yet) is left out.
 
     Raises:
-        ParameterError: an unknown name or format, or a file that cannot be written.
+        ParameterError: an unknown name or format, a run without physics, or a file that cannot be written.
     """
     if format not in FORMATS:
         raise ParameterError(f"--format {format}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
     names = select(only or ())
+    run.require_physics()
     make_folder(run.plots)
     written = []
     for name in names:
