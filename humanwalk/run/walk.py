@@ -88,6 +88,7 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
     time = read_motion_table(recording).time
     # JSON is YAML, and quotes whatever a path may hold.
     overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
+    overrides["description"] = json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}")
     overrides["follow.kinematic"] = str(kinematic).lower()
     if mapping is not None:
         overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
