@@ -18,6 +18,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from humanwalk.diagrams.balanced_walker import make_balanced_walker
     from humanwalk.diagrams.playback import make_playback
     from humanwalk.diagrams.walker import make_walker
     from humanwalk.quantity import ParameterError
@@ -33,6 +34,7 @@ _HOMES = {
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
     "load_scenario": "humanwalk.scenario",
+    "make_balanced_walker": "humanwalk.diagrams.balanced_walker",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
     "simulate": "humanwalk.run.simulate",
@@ -45,6 +47,7 @@ __all__ = [
     "Scenario",
     "__version__",
     "load_scenario",
+    "make_balanced_walker",
     "make_playback",
     "make_walker",
     "simulate",

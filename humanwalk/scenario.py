@@ -206,6 +206,15 @@ class Scenario:
                 "follow.file: a recording is followed joint by joint, which balance.foot_force and balance.upper_body "
                 "would change; allowed: with balance.support or nothing; set their enabled: false"
             )
+        if self.follow.file and self.controller == "balanced":
+            raise ParameterError(
+                "follow.file: a recording is not followed on the walker's own feet; allowed: with controller thesis, "
+                "whose pelvis is supported; set controller: thesis"
+            )
+        if self.follow.kinematic and not self.follow.file:
+            raise ParameterError(
+                "follow.kinematic: true without a recording; allowed: with follow.file; name the recording (--follow)"
+            )
         simulation = self.simulation
         if simulation.integrator == "cenic" and simulation.time_step != 0:
             raise ParameterError(
@@ -239,7 +248,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     shipped = shipped_scenarios()
     path = shipped.get(str(name_or_path), Path(name_or_path))
     text = _read_text(path, f"scenario: {name_or_path}", f"{', '.join(shipped)}, or the path of a YAML file")
-    return parse_scenario(text, overrides, name=path.name)
+    return parse_scenario(text, overrides, name=path.name, folder=path.parent)
 
 
 def load_as[T](kind: type[T], path: Path) -> T:
@@ -258,9 +267,16 @@ def load_as[T](kind: type[T], path: Path) -> T:
     return parameters
 
 
-def parse_scenario(text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario") -> Scenario:
-    """Scenario from YAML text; see `load_scenario`."""
+def parse_scenario(
+    text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario", folder: Path = Path()
+) -> Scenario:
+    """Scenario from YAML text; see `load_scenario`. Files that the text names stand in `folder`, if not elsewhere."""
     data = _read_yaml(text, name)
+    follow = data.get("follow")
+    if isinstance(follow, dict):
+        for key in ("file", "mapping"):
+            if isinstance(follow.get(key), str) and follow[key]:
+                follow[key] = str(folder / follow[key])
     for key, value in (overrides or {}).items():
         _override(data, key, _read_scalar(value, key))
     scenario = _build(Scenario, data, "")
@@ -291,7 +307,10 @@ def _read_text(path: Path, name: str, allowed: str) -> str:
 
 def _read_yaml(text: str, name: str) -> dict[str, Any]:
     try:
+        _require_keys_once(yaml.compose(text, Loader=yaml.SafeLoader), name)
         data = yaml_load(data=text, private=True) if text.strip() else {}
+    except ParameterError:
+        raise
     except (yaml.YAMLError, ValueError, AttributeError, RecursionError) as error:
         # PyYAML lets an AttributeError out of a bad !!timestamp.
         mark = getattr(error, "problem_mark", None)
@@ -304,6 +323,31 @@ def _read_yaml(text: str, name: str) -> dict[str, Any]:
         raise ParameterError(f"{name}: a scenario is a mapping of fields, like `duration: 15`")
     # Root keys that begin with an underscore hold anchors, as everywhere in Drake; a tag is no such key.
     return {key: value for key, value in data.items() if key == "_tag" or not str(key).startswith("_")}
+
+
+def _require_keys_once(root: yaml.Node | None, name: str) -> None:
+    """Raise ParameterError where a mapping has a key twice: YAML readers keep the last without a word."""
+    waiting, seen = [root], set()
+    while waiting:
+        node = waiting.pop()
+        # An anchor may stand in many places, and contain itself.
+        if not isinstance(node, yaml.CollectionNode) or id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            waiting.extend(node.value)
+            continue
+        lines: dict[str, int] = {}
+        for key, entry in node.value:
+            waiting.extend((key, entry))
+            if isinstance(key, yaml.ScalarNode):
+                line = key.start_mark.line + 1
+                if key.value in lines:
+                    raise ParameterError(
+                        f"{name}: {_shown(key.value)} comes twice, at lines {lines[key.value]} and {line}; allowed: "
+                        "every field once in its group; remove one"
+                    )
+                lines[key.value] = line
 
 
 def _read_scalar(value: str, key: str) -> Any:

@@ -21,7 +21,15 @@ def example(name):
 
 
 def test_every_example_is_tested():
-    tested = {"build_a_walker", "sweep_a_parameter", "plot_joint_torques", "read_a_run", "own_controller"}
+    tested = {
+        "build_a_walker",
+        "compare_with_people",
+        "follow_a_recording",
+        "own_controller",
+        "plot_joint_torques",
+        "read_a_run",
+        "sweep_a_parameter",
+    }
     assert {path.stem for path in EXAMPLES.glob("*.py")} == tested
 
 
@@ -55,6 +63,19 @@ def test_plot_joint_torques_draws_both_knees(tmp_path):
 def test_own_controller_changes_the_walk():
     own = example("own_controller")
     assert own.main(0.2, lever=0.05) != own.main(0.2, lever=0.0)
+
+
+def test_recording_is_followed_with_physics_and_shown_without(tmp_path):
+    runs = example("follow_a_recording").main(tmp_path, duration=0.3)
+    assert {name: run.summary["physics"] for name, run in runs.items()} == {"followed": True, "shown": False}
+    assert all(run.summary["end"] == "completed" for run in runs.values())
+
+
+def test_comparison_with_people_is_of_every_height():
+    found = example("compare_with_people").main((0.12, 0.2), duration=2.5)
+    assert set(found) == {0.12, 0.2}
+    # A lower step bends the knee less beyond people's.
+    assert 1.0 > found[0.12] > found[0.2] > 0.5
 
 
 def test_read_a_run_reads_what_a_script_saved(tmp_path):

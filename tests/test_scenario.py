@@ -390,3 +390,31 @@ def test_every_number_is_refused_just_outside_its_range(key):
     whole = typing.get_type_hints(field_of)[name] is int
     for value in (field.metadata["low"] - 0.01 * span, field.metadata["high"] + 0.01 * span):
         assert refusal("", {key: repr(math.floor(value) if whole else value)}).startswith(f"{key}:")
+
+
+# A key that comes twice.
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "lines"),
+    [
+        ("duration: 1\nseed: 2\nduration: 3\n", "duration", "1 and 3"),
+        ("gait:\n  path: {step_height: 0.1,\n    step_height: 0.2}\n", "step_height", "2 and 3"),
+        ("gait: {ramp: {speed: 1}}\ngait: {}\n", "gait", "1 and 2"),
+        ('"seed": 1\nseed: 1\n', "seed", "1 and 2"),
+        ("_a: &a {speed: 1, speed: 2}\ngait: {ramp: *a}\n", "speed", "1 and 1"),
+    ],
+)
+def test_key_that_comes_twice_is_refused_wherever_it_is(text, key, lines):
+    with pytest.raises(ParameterError) as error:
+        parse_scenario(text, name="mine.yaml")
+    assert str(error.value).startswith(f"mine.yaml: '{key}' comes twice, at lines {lines}; allowed:")
+    assert "\n" not in str(error.value)
+
+
+def test_same_key_in_two_groups_is_no_doubling():
+    points = "[{time: 0.5, forward: 1}, {time: 2, forward: 1}]"
+    scenario = parse_scenario(
+        f"_a: &a {{speed: 1.0}}\ngait: {{ramp: *a}}\nbalanced: {{command: {{points: {points}}}}}\n"
+    )
+    assert (scenario.gait.ramp.speed, len(scenario.balanced.command.points)) == (1.0, 2)

@@ -3,10 +3,13 @@
 from pydrake.systems.framework import Diagram
 
 from humanwalk.diagrams.balanced_walker import make_balanced_walker
+from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.scenario import Scenario
 
 
 def make_diagram(scenario: Scenario) -> Diagram:
-    """The walker with the scenario's controller; see `make_walker` and `make_balanced_walker` for its ports."""
+    """The walker with the scenario's controller, or its recording without physics; see the builders for the ports."""
+    if scenario.follow.kinematic:
+        return make_playback(scenario)
     return make_balanced_walker(scenario) if scenario.controller == "balanced" else make_walker(scenario)

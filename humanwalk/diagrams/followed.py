@@ -1,6 +1,7 @@
 """The recording that a scenario follows, as a motion of the scenario's body."""
 
 import difflib
+import logging
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -26,11 +27,16 @@ from humanwalk.scenario import Scenario, load_as
 
 Array = npt.NDArray[np.float64]
 
+logger = logging.getLogger(__name__)
+
 NEEDED = tuple(name for side in SIDES for name in LEG_JOINTS[side][:5])
 """Joints without which it is no walk: hips, knees, ankles. Every other joint stays at zero unless it is recorded."""
 
 RANGE_TOLERANCE = 0.1
 """How far a recorded angle may lie beyond the joint's range; it is then moved to its end [rad]."""
+
+LEAST_TOLD = 0.01
+"""Of an angle that is moved, the least that is told [deg]: a file's digits may be cut off."""
 
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
@@ -41,6 +47,8 @@ def followed_motion(scenario: Scenario) -> RecordedMotion:
     The pelvis' path is the recorded one, moved so that it starts above the origin with the lowest point of the soles
     on the ground. Without a recorded one the pelvis stays upright, and goes where the lowest point of the soles,
     standing still on the ground, carries it.
+
+    Angles a little beyond a joint's range are moved to its end, which the log tells in a line.
 
     Raises:
         ParameterError: the recording or its mapping cannot be used, with a mend.
@@ -94,8 +102,7 @@ class _Columns:
                 f"the columns {missing[0]} or {COORDINATES[missing[0]][0]}, or say in --mapping which they are "
                 f"(columns: {{{missing[0]}: {{column: ...}}}}) or that they stay (hold: {{{missing[0]}: 0}})"
             )
-        self._require_in_range(joints, angles)
-        return np.clip(angles, joints.lower, joints.upper)
+        return self._within_range(joints, angles)
 
     def pelvis_turns(self) -> Array:
         """Pitch, roll, yaw [rad], shape (rows, 3); zero where they are not recorded."""
@@ -170,7 +177,8 @@ class _Columns:
             )
         return self._table.in_degrees
 
-    def _require_in_range(self, joints: JointMap, angles: Array) -> None:
+    def _within_range(self, joints: JointMap, angles: Array) -> Array:
+        """The angles, each moved to the end of its joint's range where it is beyond by up to RANGE_TOLERANCE."""
         beyond = np.maximum(joints.lower - angles, angles - joints.upper)
         row, i = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
         if beyond[row, i] > RANGE_TOLERANCE:
@@ -179,6 +187,11 @@ class _Columns:
                 f"at {self._table.time[row]:g} s; allowed: {joints.lower[i]:.3g} to {joints.upper[i]:.3g} rad; "
                 "check the unit (angle_unit) and the sign (scale: -1) in --mapping"
             )
+        most = np.rad2deg(beyond.max(axis=0))
+        moved = [f"{joints.names[i]} by up to {most[i]:.2g} deg" for i in np.argsort(-most) if most[i] > LEAST_TOLD]
+        if moved:
+            logger.warning("%s: beyond the range of joints, moved to its end: %s", self._file, ", ".join(moved))
+        return np.clip(angles, joints.lower, joints.upper)
 
 
 def _carried_by_the_feet(

@@ -11,19 +11,21 @@ from humanwalk.diagrams.ground import add_level_ground
 from humanwalk.diagrams.reference import add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable
 from humanwalk.scenario import Scenario
-from humanwalk.systems.playback_positions import PlaybackPositions
+from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.systems.playback_state import PlaybackState
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 
 
 def make_playback(scenario: Scenario) -> Diagram:
     """Wire the walking reference of a scenario straight to the picture: what the walker would do if it could.
 
-    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_positions; with a recording
-    it stands in for gait, arms, inverse_kinematics and interpolator.
+    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_state, body_observer; with a
+    recording it stands in for gait, arms, inverse_kinematics and interpolator.
 
     Exported outputs:
-        positions (49): plant positions q.
+        state (97): plant state [q; v].
         desired_state (84): desired joint angles [rad], rates [rad/s].
+        soles (6), com (6): see BodyObserver.
         ik_status (6): see InverseKinematicsSolver; not with a recording.
         query_object: SceneGraph's, for a visualiser.
 
@@ -40,8 +42,9 @@ def make_playback(scenario: Scenario) -> Diagram:
     add_human(plant, scenario.subject)
     add_level_ground(plant, scenario.contact)
     plant.Finalize()
-    positions = builder.AddNamedSystem("playback_positions", PlaybackPositions(plant))
-    to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant))
+    state = builder.AddNamedSystem("playback_state", PlaybackState(plant))
+    body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
+    to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
 
     if scenario.follow.file:
         source = builder.AddNamedSystem("recording", RecordedPostureSource(followed_motion(scenario)))
@@ -51,16 +54,17 @@ def make_playback(scenario: Scenario) -> Diagram:
         solver = reference.inverse_kinematics
         connect_soles(builder, reference.gait, solver)
         builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
-        pelvis, desired_state = (
-            reference.gait.get_pelvis_reference_output_port(),
-            reference.interpolator.get_desired_state_output_port(),
-        )
+        pelvis = reference.gait.get_pelvis_reference_output_port()
+        desired_state = reference.interpolator.get_desired_state_output_port()
         builder.ExportOutput(solver.get_status_output_port(), "ik_status")
-    builder.Connect(pelvis, positions.get_pelvis_reference_input_port())
-    builder.Connect(desired_state, positions.get_desired_state_input_port())
-    builder.Connect(positions.get_positions_output_port(), to_pose.get_input_port())
+    builder.Connect(pelvis, state.get_pelvis_reference_input_port())
+    builder.Connect(desired_state, state.get_desired_state_input_port())
+    builder.Connect(state.get_state_output_port(), body.get_state_input_port())
+    builder.Connect(state.get_state_output_port(), to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))
-    builder.ExportOutput(positions.get_positions_output_port(), "positions")
+    builder.ExportOutput(state.get_state_output_port(), "state")
+    builder.ExportOutput(body.get_soles_output_port(), "soles")
+    builder.ExportOutput(body.get_com_output_port(), "com")
     builder.ExportOutput(desired_state, "desired_state")
     builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
     diagram = builder.Build()

@@ -20,10 +20,14 @@ class FollowParameters:
     """A recording whose joint angles are followed instead of the gait's."""
 
     file: str = ""
-    """A .mot, .sto or .csv file with joint angles; none: the gait is walked."""
+    """A .mot, .sto or .csv file with joint angles, beside the scenario's if not elsewhere; none: the gait is walked."""
 
     mapping: str = ""
-    """A YAML file that says which column is which joint and in what unit (`MotionMapping`); none: by name."""
+    """A YAML file, beside the scenario's as well, that says which column is which joint and in what unit
+    (`MotionMapping`); none: by name."""
+
+    kinematic: bool = False
+    """Show the recording as it is, without physics: no forces, no torques, no balance."""
 
     ease_in: float = quantity(0.3, "s", 0.0, 5.0)
     """Time over which the recording gets up to speed, since the body starts at rest."""

@@ -1,7 +1,9 @@
-"""The command line: humanwalk walk, replay, video, snapshot, plot, scenarios, model, diagram."""
+"""The command line: one function a command."""
 
 import logging
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -59,6 +61,9 @@ def walk(
     mapping: Annotated[
         Path | None, typer.Option(help="YAML file: which column of the recording is which joint, in what unit.")
     ] = None,
+    kinematic: Annotated[
+        bool, typer.Option("--kinematic", help="Show the followed recording as it is, without physics.")
+    ] = False,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, at true speed.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
@@ -71,7 +76,9 @@ def walk(
 
     overrides = _overrides(set_)
     if follow is not None:
-        overrides |= follow_overrides(follow, mapping)
+        overrides |= follow_overrides(follow, mapping, kinematic)
+    elif kinematic:
+        raise ParameterError("--kinematic: is for a recording; allowed: with --follow FILE; name the recording")
     elif mapping is not None:
         raise ParameterError(
             f"--mapping {mapping}: is for a recording; allowed: with --follow FILE; name the recording"
@@ -182,6 +189,30 @@ def plot(
         console.print(f"{run}: nothing to draw of what was asked for", soft_wrap=True)
 
 
+@app.command(epilog="Examples: humanwalk report runs/walk  |  humanwalk report runs/walk --json > walk.json")
+def report(
+    run: Annotated[Path, typer.Argument(help="Folder of a run that walks straight ahead.")],
+    json_: Annotated[
+        bool, typer.Option("--json", help="Print the numbers of every stride instead of the tables; write no page.")
+    ] = False,
+) -> None:
+    """Compare a run with people, stride by stride, and write report.html into its folder."""
+    import json
+
+    from humanwalk.run.folder import Run
+    from humanwalk.run.report import compare_run, terminal_tables, to_json, write_report
+
+    opened = Run.open(run)
+    comparison = compare_run(opened)
+    if json_:
+        print(json.dumps(to_json(comparison), indent=2, allow_nan=False))
+        return
+    path = write_report(opened, comparison)
+    for table in terminal_tables(comparison):
+        Console(markup=False).print(table)
+    console.print(f"{path}", soft_wrap=True)
+
+
 @app.command(
     epilog="Examples: humanwalk export runs/thesis --to opensim  |  humanwalk export runs/thesis --to c3d -o lab"
 )
@@ -274,11 +305,27 @@ def main() -> None:
     """Entry point; bad input is one line and exit code 2."""
     # Drake's notices (ports, half-spaces) are not for people who walk; its errors arrive as exceptions.
     logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
+    with _own_log():
+        try:
+            app()
+        except ParameterError as error:
+            console.print(f"humanwalk: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+            sys.exit(BAD_INPUT)
+
+
+@contextmanager
+def _own_log() -> Iterator[None]:
+    """Within the block, what this package logs is a line for people."""
+    log, handler = logging.getLogger("humanwalk"), logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("humanwalk: %(message)s"))
+    log.addHandler(handler)
+    # pydrake gives the root logger a handler of its own.
+    log.propagate = False
     try:
-        app()
-    except ParameterError as error:
-        console.print(f"humanwalk: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
-        sys.exit(BAD_INPUT)
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.propagate = True
 
 
 def _require_look(look: str) -> None:

@@ -6,8 +6,8 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +35,9 @@ SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
+RECORDING = "recording"
+MAPPING = "mapping.yaml"
+"""Copies of what the run followed; the recording has its own suffix."""
 
 SIGNALS_BYTES_PER_ROW = 2600
 REPLAY_BYTES_PER_FRAME = 11_000
@@ -80,6 +83,14 @@ class Run:
         summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
         return summary
 
+    def require_physics(self) -> None:
+        """Raise ParameterError unless there are torques and forces."""
+        if self.scenario.follow.kinematic:
+            raise ParameterError(
+                f"{self.path}: a kinematic run has no forces and no torques; allowed: one with physics; walk again "
+                "without --kinematic"
+            )
+
     @property
     def units(self) -> dict[str, str]:
         """Unit of every signal, "" for a pure number."""
@@ -103,8 +114,9 @@ class Run:
         """A plot of the run by its name, as a matplotlib figure; a notebook shows it.
 
         Raises:
-            ParameterError: no such plot, or the run has nothing to draw for it.
+            ParameterError: no such plot, or the run has nothing to draw for it, or no physics.
         """
+        self.require_physics()
         # Plots draw runs.
         from humanwalk.run.plots import PLOTS as DRAWINGS
 
@@ -187,6 +199,8 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     rows = scenario.duration / scenario.recording.signal_period
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
+    with suppress(OSError):
+        needed += Path(scenario.follow.file).stat().st_size if scenario.follow.file else 0
     free = shutil.disk_usage(folder).free
     if free < needed:
         raise ParameterError(
@@ -198,7 +212,8 @@ def require_room(folder: Path, scenario: Scenario) -> None:
 def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     """Everything that summary.json says of a simulation."""
     summary = summarize(outcome, scenario_name)
-    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario))
+    physics = summary["physics"]
+    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario)) if physics else None
     summary["provenance"] = provenance(outcome.scenario, outcome.signals)
     return summary
 
@@ -206,12 +221,28 @@ def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
 def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
     """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all.
 
-    The summary comes last: a folder that has one is a complete run.
+    The summary comes last: a folder that has one is a complete run. What was followed is copied into the folder, and
+    followed there by whoever reads the run.
     """
     summary = measure(outcome, scenario_name)
     metadata = {b"humanwalk": json.dumps({"scenario": scenario_name} | summary["provenance"]).encode()}
     signals = outcome.signals.replace_schema_metadata(metadata)
-    write_text(path / SCENARIO, dump_scenario(outcome.scenario))
+    write_text(path / SCENARIO, dump_scenario(_keep_followed(path, outcome.scenario)))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
     write_text(path / SUMMARY, json.dumps(summary, indent=2) + "\n")
     return Run(path)
+
+
+def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
+    """Copy the recording and the mapping that a scenario follows; returns the scenario that follows the copies."""
+    follow = scenario.follow
+    kept: dict[str, Any] = {}
+    names = {"file": RECORDING + Path(follow.file).suffix.lower(), "mapping": MAPPING}
+    for field, name in names.items():
+        followed = getattr(follow, field)
+        # One that was moved while it was simulated stays where it was; a checkpoint has copied it before.
+        if followed and Path(followed).is_file():
+            if not (path / name).exists():
+                write_whole(path / name, partial(shutil.copyfile, followed))
+            kept[field] = name
+    return replace(scenario, follow=replace(follow, **kept))

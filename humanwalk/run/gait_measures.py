@@ -66,11 +66,11 @@ def gait_measures(signals: pa.Table, begin: float) -> dict[str, Any]:
         "strides": {side.lower(): len(foot.strides) for side, foot in feet.items()},
         "stride_time_s": _each(feet, lambda side: stride_times(signals, feet[side])),
         "stride_length_m": _each(feet, lambda side: stride_lengths(signals, side, feet[side])),
-        "step_time_s": _each(feet, lambda side: step_times(signals, feet[side], feet[_other(side)])),
+        "step_time_s": _each(feet, lambda side: step_times(signals, feet[side], feet[other_side(side)])),
         "step_length_m": _each(feet, lambda side: step_lengths(signals, side, feet[side])),
         "step_width_m": _each(feet, lambda side: step_widths(signals, side, feet[side])),
         "stance_share": _each(feet, lambda side: stance_shares(signals, feet[side])),
-        "double_support_share": _each(feet, lambda side: double_support_shares(feet[side], feet[_other(side)])),
+        "double_support_share": _each(feet, lambda side: double_support_shares(feet[side], feet[other_side(side)])),
         "cadence_1_min": cadence(signals, feet),
         "stride_speed_m_s": stride_speed(signals, feet),
         "cop_excursion_m": {
@@ -101,13 +101,13 @@ def step_times(signals: pa.Table, foot: Footfalls, other: Footfalls) -> Array:
 
 def step_lengths(signals: pa.Table, side: Side, foot: Footfalls) -> Array:
     """How far this sole is in front of the other one at its touchdown [m]."""
-    return (_sole(signals, side, "x") - _sole(signals, _other(side), "x"))[foot.touchdowns]
+    return (_sole(signals, side, "x") - _sole(signals, other_side(side), "x"))[foot.touchdowns]
 
 
 def step_widths(signals: pa.Table, side: Side, foot: Footfalls) -> Array:
     """How far the soles are apart sideways at this foot's touchdown [m]; negative if they are crossed."""
     outward = 1.0 if side == "Left" else -1.0
-    return outward * (_sole(signals, side, "y") - _sole(signals, _other(side), "y"))[foot.touchdowns]
+    return outward * (_sole(signals, side, "y") - _sole(signals, other_side(side), "y"))[foot.touchdowns]
 
 
 def stance_shares(signals: pa.Table, foot: Footfalls) -> Array:
@@ -166,7 +166,8 @@ def joint_work(signals: pa.Table, foot: Footfalls) -> dict[str, dict[str, float]
     }
 
 
-def _other(side: Side) -> Side:
+def other_side(side: Side) -> Side:
+    """Left of Right, and Right of Left."""
     return "Left" if side == "Right" else "Right"
 
 

@@ -35,19 +35,22 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     """The summary of a run, ready for JSON; keys carry their units.
 
     Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
-    end. A run that ended before has null there, and so has every number that is not finite.
+    end. A run that ended before has null there, and so has every number that is not finite. Without physics there are
+    no forces: steps, lift, support, torques and cost are null or none.
     """
     scenario, signals = outcome.scenario, outcome.signals
     time = signals[TIME].to_numpy()
     steady = time >= steady_from(scenario)
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
-    supported = scenario.controller == "thesis" and scenario.balance.support.enabled
+    physics = not scenario.follow.kinematic
+    supported = physics and scenario.controller == "thesis" and scenario.balance.support.enabled
     summary = {
         "scenario": scenario_name,
         "description": scenario.description,
         "survived": outcome.survived,
         "end": outcome.end,
+        "physics": physics,
         "duration_s": float(time[-1]),
         "fall_time_s": float(time[-1]) if outcome.end == "fell" else None,
         "steady_from_s": steady_from(scenario),
@@ -55,9 +58,9 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
         "commanded_speed_m_s": None if scenario.follow.file else scenario.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
-        "foot_lift_m": {side.lower(): foot_lift(signals, side) for side in SIDES},
+        "foot_lift_m": {side.lower(): foot_lift(signals, side) if physics else None for side in SIDES},
         "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
-        "steps": sum(len(touchdowns(signals, side)) for side in SIDES),
+        "steps": sum(len(touchdowns(signals, side)) for side in SIDES) if physics else None,
         "external_support": supported,
         "support_force_rms_N": _rms_norm(signals, "support.force_", "N", steady) if supported else 0.0,
         "support_torque_rms_N_m": _rms_norm(signals, "support.torque_", "N_m", steady) if supported else 0.0,
@@ -67,7 +70,7 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "tracking_error_rad": {name: tracking_error(signals, name, steady) for name in joints},
         "ik_converged_share": ik_converged_share(signals),
         "qp_failures": qp_failures(signals),
-        "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
+        "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass) if physics else None,
         "wall_time_s": outcome.wall_time,
         "realtime_factor": float(time[-1]) / outcome.wall_time,
         "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},

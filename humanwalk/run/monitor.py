@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, EventStatus
+from pydrake.systems.framework import Context, EventStatus, System
 
 FALL_HEIGHT_SHARE = 0.6
 """Share of its height at the start below which the pelvis counts as fallen."""
@@ -18,16 +18,16 @@ CHECK_PERIOD = 0.01
 
 @dataclass
 class Monitor:
-    """Watches the plant of a root diagram while its simulator advances.
+    """Watches a plant in a root diagram while its simulator advances.
 
     Attributes:
-        plant: the plant.
+        watched: the plant; where there is none, the diagram that is simulated, which cannot fall.
         on_progress: called with the simulated time [s] at every look.
         reason: why the simulation was ended: "fell", "not a number", "interrupted"; empty while it goes on.
         interrupted: set from outside to end the simulation at the next look.
     """
 
-    plant: MultibodyPlant
+    watched: System
     on_progress: Callable[[float], None] = lambda time: None
     reason: str = ""
     interrupted: bool = False
@@ -40,20 +40,23 @@ class Monitor:
         if time < self._next_look:
             return EventStatus.DidNothing()
         self._next_look = time + CHECK_PERIOD
-        q = self.plant.GetPositions(self.plant.GetMyContextFromRoot(root_context))
-        pelvis_height = q[self.plant.GetBodyByName("Pelvis").floating_positions_start() + 6]
+        self.reason = self._body_says(root_context) or ("interrupted" if self.interrupted else "")
+        if self.reason:
+            return EventStatus.ReachedTermination(self.watched, self.reason)
+        self.on_progress(time)
+        return EventStatus.Succeeded()
+
+    def _body_says(self, root_context: Context) -> str:
+        plant = self.watched
+        if not isinstance(plant, MultibodyPlant):
+            return ""
+        q = plant.GetPositions(plant.GetMyContextFromRoot(root_context))
+        pelvis_height = q[plant.GetBodyByName("Pelvis").floating_positions_start() + 6]
         if self._fallen_below == -np.inf:
             self._fallen_below = FALL_HEIGHT_SHARE * pelvis_height
         if not np.isfinite(q).all():
-            self.reason = "not a number"
-        elif pelvis_height < self._fallen_below:
-            self.reason = "fell"
-        elif self.interrupted:
-            self.reason = "interrupted"
-        else:
-            self.on_progress(time)
-            return EventStatus.Succeeded()
-        return EventStatus.ReachedTermination(self.plant, self.reason)
+            return "not a number"
+        return "fell" if pelvis_height < self._fallen_below else ""
 
     @contextmanager
     def stop_on_interrupt(self) -> Iterator[None]:

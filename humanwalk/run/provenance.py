@@ -2,6 +2,7 @@
 
 import hashlib
 import platform
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,13 @@ PACKAGES = ("humanwalk", "drake", "numpy")
 
 
 def provenance(scenario: Scenario, signals: pa.Table) -> dict[str, Any]:
-    """Seed, versions and SHA-256 hashes of scenario, signals and followed recording (null without one), for JSON."""
-    recording = scenario.follow.file
+    """Seed, versions and SHA-256 of scenario, signals, and followed recording and mapping (null without), for JSON."""
     return {
         "seed": scenario.seed,
         "scenario_sha256": scenario_hash(scenario),
         "signals_sha256": signals_hash(signals),
-        "recording_sha256": file_hash(Path(recording)) if recording else None,
+        "recording_sha256": file_hash(scenario.follow.file),
+        "mapping_sha256": file_hash(scenario.follow.mapping),
         "versions": versions(),
     }
 
@@ -33,8 +34,10 @@ def versions() -> dict[str, str]:
 
 
 def scenario_hash(scenario: Scenario) -> str:
-    """Of the complete scenario, as it is written down."""
-    return hashlib.sha256(dump_scenario(scenario).encode()).hexdigest()
+    """Of the complete scenario as it is written down, but for where the files are that it follows."""
+    follow = scenario.follow
+    nowhere = replace(follow, file=follow.file and "recording", mapping=follow.mapping and "mapping")
+    return hashlib.sha256(dump_scenario(replace(scenario, follow=nowhere)).encode()).hexdigest()
 
 
 def signals_hash(signals: pa.Table) -> str:
@@ -46,9 +49,9 @@ def signals_hash(signals: pa.Table) -> str:
     return digest.hexdigest()
 
 
-def file_hash(path: Path) -> str | None:
-    """Of a file's bytes, or None if it cannot be read any more."""
+def file_hash(path: str) -> str | None:
+    """Of a file's bytes, or None if there is no path or it cannot be read any more."""
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest() if path else None
     except OSError:
         return None

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -95,19 +94,20 @@ def _changes(run: Run, then: Mapping[str, Any]) -> Iterator[str]:
         return
     if then["scenario_sha256"] != scenario_hash(run.scenario):
         yield "scenario.yaml was changed since the run, or has fields that this version reads otherwise"
-    recording = run.scenario.follow.file
-    if recording and _recording_hash(recording) != then["recording_sha256"]:
-        yield f"{recording} was changed since the run"
+    for what, path in (("recording", run.scenario.follow.file), ("mapping", run.scenario.follow.mapping)):
+        # A run of an earlier version has no hash of its mapping.
+        if path and _followed_hash(path) != then.get(f"{what}_sha256", _followed_hash(path)):
+            yield f"{path} was changed since the run"
     now = versions()
     for name, was in then["versions"].items():
         if now.get(name) != was:
             yield f"{name} is {now.get(name)}, was {was}"
 
 
-def _recording_hash(recording: str) -> str:
-    found = file_hash(Path(recording))
+def _followed_hash(path: str) -> str:
+    found = file_hash(path)
     if found is None:
-        raise ParameterError(f"follow.file: {recording} is gone; allowed: the file that was followed; put it back")
+        raise ParameterError(f"follow: {path} is gone; allowed: the file that was followed; put it back")
     return found
 
 

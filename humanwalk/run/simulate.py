@@ -12,6 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import DiagramBuilder
 
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.joint_map import JointMap
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.quantity import ParameterError
@@ -85,21 +86,22 @@ def simulate(
     """
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_diagram(scenario))
-    plant = walker.GetSubsystemByName("plant")
-    assert isinstance(plant, MultibodyPlant)
-    recorder = Recorder.add_to(builder, walker, JointMap.of(plant), scenario.recording.signal_period)
+    plant = walker.GetSubsystemByName("plant") if walker.HasSubsystemNamed("plant") else None
+    assert plant is None or isinstance(plant, MultibodyPlant)
+    joints = JointMap.of(plant or kinematics_plant(scenario.subject))
+    recorder = Recorder.add_to(builder, walker, joints, scenario.recording.signal_period)
     if meshcat is not None:
         add_visualizer(
             builder,
             walker.GetOutputPort("query_object"),
             meshcat,
             scenario.recording.frame_rate,
-            walker.GetOutputPort("foot_forces"),
+            walker.GetOutputPort("foot_forces") if walker.HasOutputPort("foot_forces") else None,
         )
     diagram = builder.Build()
     diagram.set_name("humanwalk")
     simulator = Simulator(diagram)
-    if scenario.simulation.integrator == "cenic":
+    if plant is not None and scenario.simulation.integrator == "cenic":
         ApplySimulatorConfig(
             SimulatorConfig(
                 integration_scheme="cenic",
@@ -120,7 +122,7 @@ def simulate(
             on_checkpoint(Outcome(scenario, recorder.table(simulator.get_context()), "unfinished", now - started))
             last_checkpoint = time.perf_counter()
 
-    monitor = Monitor(plant, on_progress=look)
+    monitor = Monitor(plant or walker, on_progress=look)
     simulator.set_monitor(monitor)
     with monitor.stop_on_interrupt():
         try:

@@ -65,10 +65,12 @@ def walk_and_write(
             for folder in made:
                 folder.rmdir()
         raise
+    if not run.summary["physics"]:
+        console.print("no physics: joints and pelvis are where the recording has them; no forces, torques or balance")
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
             write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}"))
-        if plots:
+        if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
@@ -77,8 +79,8 @@ def walk_and_write(
     return run
 
 
-def follow_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
-    """Overrides for a scenario that follows a recording to its end.
+def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> dict[str, str]:
+    """Overrides for a scenario that follows a recording to its end, with or without physics.
 
     Raises:
         ParameterError: the recording cannot be read.
@@ -86,6 +88,8 @@ def follow_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
     time = read_motion_table(recording).time
     # JSON is YAML, and quotes whatever a path may hold.
     overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
+    overrides["description"] = json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}")
+    overrides["follow.kinematic"] = str(kinematic).lower()
     if mapping is not None:
         overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
     return overrides
@@ -183,8 +187,9 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
         row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
     if summary["qp_failures"] is not None:
         row("whole-body programs without solution", summary["qp_failures"], "d", "")
-    name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
-    row(f"peak torque, {name}", torque, ".0f", "N m")
-    row("cost of transport", summary["cost_of_transport"], ".2f", "")
+    if summary["physics"]:
+        name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
+        row(f"peak torque, {name}", torque, ".0f", "N m")
+        row("cost of transport", summary["cost_of_transport"], ".2f", "")
     row("real-time factor", summary["realtime_factor"], ".2f", "")
     return table

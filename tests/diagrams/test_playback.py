@@ -28,7 +28,14 @@ def test_shipped_scenarios_all_play():
 def test_ports(played):
     _, playback = played
     ports = {port.get_name(): port.size() for port in map(playback.get_output_port, range(playback.num_output_ports()))}
-    assert ports == {"positions": 49, "desired_state": 84, "ik_status": 6, "query_object": 0}
+    assert ports == {
+        "state": 97,
+        "desired_state": 84,
+        "soles": 6,
+        "com": 6,
+        "ik_status": 6,
+        "query_object": 0,
+    }
     assert playback.num_input_ports() == 0
 
 
@@ -36,7 +43,7 @@ def test_no_plant_is_in_the_diagram(played):
     _, playback = played
     assert not any(isinstance(system, MultibodyPlant) for system in playback.GetSystems())
     names = {system.get_name() for system in playback.GetSystems()}
-    assert {"scene_graph", "gait", "arms", "inverse_kinematics", "playback_positions"} <= names
+    assert {"scene_graph", "gait", "arms", "inverse_kinematics", "playback_state"} <= names
 
 
 def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
@@ -50,7 +57,7 @@ def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
         simulator.AdvancePendingEvents()
         root = simulator.get_context()
         target = gait.target(time)
-        plant.SetPositions(context, playback.GetOutputPort("positions").Eval(root))
+        plant.SetPositionsAndVelocities(context, playback.GetOutputPort("state").Eval(root))
         X_WP = plant.GetBodyByName("Pelvis").EvalPoseInWorld(context)
         above_ground = skeleton.hip_height - target.pelvis.drop
         np.testing.assert_allclose(X_WP.translation(), [target.pelvis.distance, 0.0, above_ground], atol=1e-9)
@@ -71,7 +78,7 @@ def test_joints_are_the_desired_ones(played, joints):
     simulator = Simulator(playback)
     simulator.AdvanceTo(0.3)
     root = simulator.get_context()
-    q = playback.GetOutputPort("positions").Eval(root)
+    q = playback.GetOutputPort("state").Eval(root)[:49]
     desired = playback.GetOutputPort("desired_state").Eval(root)
     np.testing.assert_array_equal(q[joints.q], desired[:42])
     assert (q[joints.q] >= joints.lower - 1e-9).all()
@@ -86,7 +93,7 @@ def test_picture_shows_the_body_where_the_positions_are(played):
     query = playback.GetOutputPort("query_object").Eval(root)
     inspector = query.inspector()
     (pelvis,) = (frame for frame in inspector.GetAllFrameIds() if inspector.GetName(frame).endswith("Pelvis"))
-    position = playback.GetOutputPort("positions").Eval(root)[4:7]
+    position = playback.GetOutputPort("state").Eval(root)[4:7]
     np.testing.assert_allclose(query.GetPoseInWorld(pelvis).translation(), position, atol=1e-12)
 
 

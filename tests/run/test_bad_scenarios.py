@@ -128,6 +128,9 @@ def test_mutated_scenario_is_run_or_refused_in_one_line(tmp_path_factory, text):
         b"duration: !!python/object/apply:os.system ['touch pwned']",
         b"? !!python/object/apply:os.system ['touch pwned']\n: 1",
         b"--- 1\n--- 2",
+        b"a: &a {b: *a}\na: *a",
+        b"&a [*a, *a]",
+        b"? {a: 1}\n: 1\n? {a: 1}\n: 2",
     ],
     ids=lambda text: f"{text[:24]!r}...{len(text)}",
 )

@@ -8,6 +8,7 @@ import pytest
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import EventStatus
+from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.run.monitor import CHECK_PERIOD, FALL_HEIGHT_SHARE, Monitor
@@ -92,3 +93,11 @@ def test_second_interrupt_does_what_it_always_did(falling_plant):
         os.kill(os.getpid(), signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_without_a_plant_nothing_falls_and_ctrl_c_still_ends(falling_plant):
+    monitor = Monitor(ConstantVectorSource([0.0]))
+    assert monitor(context_at(falling_plant, 0.01)).severity() == EventStatus.Severity.kSucceeded
+    monitor.interrupted = True
+    assert monitor(context_at(falling_plant, 0.01, time=1.0)).severity() == EventStatus.Severity.kReachedTermination
+    assert monitor.reason == "interrupted"

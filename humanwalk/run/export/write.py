@@ -11,6 +11,9 @@ from humanwalk.run.export.opensim import write_opensim
 from humanwalk.run.files import make_folder
 from humanwalk.run.folder import Run
 
+NEED_PHYSICS = ("opensim", "c3d")
+"""Formats that hold forces."""
+
 FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
     "opensim": write_opensim,
     "c3d": write_c3d,
@@ -29,10 +32,13 @@ def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
         output: folder; by default the format's name inside the run's.
 
     Raises:
-        ParameterError: unknown format, a missing optional package, or a file that cannot be written.
+        ParameterError: unknown format, a run without the forces that it holds, a missing optional package, or a file
+            that cannot be written.
     """
     if to not in FORMATS:
         raise ParameterError(f"--to {to}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
+    if to in NEED_PHYSICS:
+        run.require_physics()
     folder = run.path / to if output is None else output
     make_folder(folder)
     return FORMATS[to](run, folder)

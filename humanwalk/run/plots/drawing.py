@@ -1,5 +1,7 @@
 """How every plot looks: size, colours, labels and legend; matplotlib without pyplot, so nothing is global."""
 
+import base64
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -108,9 +110,19 @@ def save(figure: Figure, path: Path, dpi: float = DPI) -> Path:
     Raises:
         ParameterError: the file cannot be written.
     """
-    form = path.suffix.removeprefix(".")
+    write_whole(path, lambda beside: _draw(figure, beside, path.suffix.removeprefix("."), path.stem, dpi))
+    return path
+
+
+def svg_data(figure: Figure, name: str) -> str:
+    """A figure as a data URL, to stand in a page by itself; `name` makes it the same every time."""
+    drawn = io.BytesIO()
+    _draw(figure, drawn, "svg", name, DPI)
+    return f"data:image/svg+xml;base64,{base64.b64encode(drawn.getvalue()).decode()}"
+
+
+def _draw(figure: Figure, target: Path | io.BytesIO, form: str, salt: str, dpi: float) -> None:
     no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
     # The salt, in place of a random one, makes an SVG the same every time.
-    with rc_context({"svg.hashsalt": path.stem}):
-        write_whole(path, lambda beside: figure.savefig(beside, format=form, dpi=dpi, metadata=no_date))
-    return path
+    with rc_context({"svg.hashsalt": salt}):
+        figure.savefig(target, format=form, dpi=dpi, metadata=no_date)

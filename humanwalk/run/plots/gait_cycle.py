@@ -1,18 +1,14 @@
 """Joint angles and powers of the legs over a gait cycle, from touchdown to touchdown, with people's beside them."""
 
-import csv
-from functools import cache
-from importlib.resources import files
-from itertools import pairwise
+from collections.abc import Sequence
 
-import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
 from humanwalk.run.folder import Run
-from humanwalk.run.measures import touchdowns
+from humanwalk.run.gait_measures import footfalls
+from humanwalk.run.human_likeness import ANGLES, CYCLE, Array, over_strides, people
 from humanwalk.run.plots.drawing import (
     LABEL_SIZE,
     PEOPLE,
@@ -24,42 +20,9 @@ from humanwalk.run.plots.drawing import (
     level,
     new_figure,
 )
-from humanwalk.run.signals import TIME
 
-Array = npt.NDArray[np.float64]
-
-CYCLE = np.linspace(0.0, 100.0, 101)
-"""Where a gait cycle is drawn [%]."""
-
-JOINTS = {
-    "LegFemurMotion": ("hip", "flexion", "hip_flexion_deg"),
-    "LegTibiaMotion": ("knee", "flexion", "knee_flexion_deg"),
-    "LegAnkleMotion": ("ankle", "dorsiflexion", "ankle_dorsiflexion_deg"),
-}
-"""Joint without its side, with its name, its positive sense and the quantity of the people's data."""
-
-PEOPLE_DATA = "models/normative_gait/schwartz2008_free_angles.csv"
-
-
-@cache
-def people(quantity: str) -> tuple[Array, Array, Array]:
-    """Gait cycle [%], mean and standard deviation [deg] of a joint angle of able-bodied people.
-
-    Source: Schwartz, Rozumalski, Trost (2008), free speed; see the note beside the data.
-    """
-    text = files("humanwalk").joinpath(PEOPLE_DATA).read_text(encoding="utf-8")
-    rows = [row for row in csv.DictReader(text.splitlines()) if row["quantity"] == quantity]
-    cycle, mean, sd = (np.array([float(row[key]) for row in rows]) for key in ("gait_cycle_percent", "mean", "sd"))
-    return cycle, mean, sd
-
-
-def over_strides(run: Run, side: Side, values: Array) -> Array | None:
-    """A signal over every whole stride of a leg in steady walking, shape (strides, 101); None if there was none."""
-    time = run.signals[TIME].to_numpy()
-    landings = touchdowns(run.signals, side)
-    landings = landings[landings >= run.summary["steady_from_s"]]
-    strides = [np.interp(begin + CYCLE / 100.0 * (end - begin), time, values) for begin, end in pairwise(landings)]
-    return np.array(strides) if strides else None
+JOINTS = {"hip": "LegFemurMotion", "knee": "LegTibiaMotion", "ankle": "LegAnkleMotion"}
+"""The sagittal joint of a leg by its name in ANGLES, without its side."""
 
 
 def gait_cycle_angles(run: Run) -> Figure | None:
@@ -67,18 +30,26 @@ def gait_cycle_angles(run: Run) -> Figure | None:
 
     Lines are means, bands one standard deviation to both sides.
     """
-    figure = _three_joints("Hip, knee and ankle over the gait cycle; bands: mean ± 1 standard deviation")
-    for axes, (motion, (name, positive, quantity)) in zip(figure.axes, JOINTS.items(), strict=True):
-        cycle, mean, sd = people(quantity)
+    return _over_people(run, "Hip, knee and ankle", ("hip", "knee", "ankle"))
+
+
+def gait_cycle_pelvis(run: Run) -> Figure | None:
+    """Tilt, obliquity and rotation of the pelvis over the gait cycle [deg], drawn as `gait_cycle_angles` are."""
+    return _over_people(run, "Pelvis", ("pelvis tilt", "pelvis obliquity", "pelvis rotation"))
+
+
+def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
+    figure = _three(f"{what} over the gait cycle; bands: mean ± 1 standard deviation")
+    for axes, name in zip(figure.axes, names, strict=True):
+        angle = ANGLES[name]
+        cycle, mean, sd = people(angle.people)
         axes.fill_between(cycle, mean - sd, mean + sd, color=PEOPLE, linewidth=0, label="people, free speed")
         curve(axes, cycle, mean, color=PEOPLE_LINE, linewidth=0.9, linestyle="--")
         level(axes, 0.0)
         for side in SIDES:
-            strides = over_strides(run, side, np.degrees(run.signals[f"{side}{motion}.angle_rad"].to_numpy()))
-            if strides is None:
+            if not _mean_and_band(axes, run, side, angle.of(run.signals, side)):
                 return None
-            _mean_and_band(axes, strides, side)
-        _finish(axes, f"{name} angle [deg]\n{positive} positive", name)
+        _finish(axes, f"{name} angle [deg]\n{angle.positive} positive", name)
     _legend(figure)
     return figure
 
@@ -89,32 +60,35 @@ def joint_power(run: Run) -> Figure | None:
     Power is torque times rate of the sagittal joint: positive where the actuator drives, negative where it brakes.
     """
     mass = run.scenario.subject.mass
-    figure = _three_joints("Power of hip, knee and ankle over the gait cycle; bands: ± 1 standard deviation")
-    for axes, (motion, (name, *_)) in zip(figure.axes, JOINTS.items(), strict=True):
+    figure = _three("Power of hip, knee and ankle over the gait cycle; bands: ± 1 standard deviation")
+    for axes, (name, motion) in zip(figure.axes, JOINTS.items(), strict=True):
         level(axes, 0.0)
         for side in SIDES:
             torque, rate = (
                 run.signals[f"{side}{motion}.{what}"].to_numpy() for what in ("torque_N_m", "velocity_rad_s")
             )
-            strides = over_strides(run, side, torque * rate / mass)
-            if strides is None:
+            if not _mean_and_band(axes, run, side, torque * rate / mass):
                 return None
-            _mean_and_band(axes, strides, side)
         _finish(axes, f"{name} power [W/kg]\ndriving positive", name)
     _legend(figure)
     return figure
 
 
-def _three_joints(title: str) -> Figure:
+def _three(title: str) -> Figure:
     return new_figure(title, height=2.7, columns=3, sharex=True)
 
 
-def _mean_and_band(axes: Axes, strides: Array, side: Side) -> None:
+def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
+    """Draw a signal over the strides of a leg in steady walking; False if there was none."""
+    strides = over_strides(run.signals, footfalls(run.signals, side, run.summary["steady_from_s"]), values)
+    if not len(strides):
+        return False
     mean, sd = strides.mean(axis=0), strides.std(axis=0)
     axes.fill_between(CYCLE, mean - sd, mean + sd, color=SIDE[side], alpha=0.2, linewidth=0)
     text = f"{side.lower()}, {len(strides)} stride{'s' if len(strides) > 1 else ''}"
     # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
     curve(axes, CYCLE, mean, color=SIDE[side], label=text, linewidth=2.2 if side == "Right" else 0.9)
+    return True
 
 
 def _finish(axes: Axes, y_label: str, name: str) -> None:

@@ -9,7 +9,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.files import make_folder
 from humanwalk.run.folder import Run
 from humanwalk.run.plots.drawing import FORMATS, save
-from humanwalk.run.plots.gait_cycle import gait_cycle_angles, joint_power
+from humanwalk.run.plots.gait_cycle import gait_cycle_angles, gait_cycle_pelvis, joint_power
 from humanwalk.run.plots.ground import centre_of_pressure, ground_reaction
 from humanwalk.run.plots.joints import joint_torques, tracking_error
 from humanwalk.run.plots.support import support_force, support_torque
@@ -19,6 +19,7 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "support_force": support_force,
     "support_torque": support_torque,
     "gait_cycle_angles": gait_cycle_angles,
+    "gait_cycle_pelvis": gait_cycle_pelvis,
     "joint_power": joint_power,
     "ground_reaction": ground_reaction,
     "centre_of_pressure": centre_of_pressure,
@@ -40,11 +41,12 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
         What was written; a plot for which the run has nothing to draw (no support, no stride yet) is left out.
 
     Raises:
-        ParameterError: an unknown name or format, or a file that cannot be written.
+        ParameterError: an unknown name or format, a run without physics, or a file that cannot be written.
     """
     if format not in FORMATS:
         raise ParameterError(f"--format {format}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
     names = select(only or ())
+    run.require_physics()
     make_folder(run.plots)
     written = []
     for name in names:

@@ -1,0 +1,242 @@
+"""A run that follows a recording holds all that it needs: it may be moved, and the recording may be lost."""
+
+import json
+import logging
+import shutil
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from humanwalk.body.opensim_names import COORDINATES
+from humanwalk.diagrams.followed import NEEDED, followed_motion
+from humanwalk.gait.motion_table import MotionTable, storage_text
+from humanwalk.quantity import ParameterError
+from humanwalk.run.cli import app
+from humanwalk.run.folder import Run
+from humanwalk.run.provenance import file_hash, scenario_hash
+from humanwalk.run.reproduce import reproduce
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+
+TIME = np.arange(0, 0.301, 0.02)
+
+
+def bend(knee=20.0):
+    """Knees bend by some degrees within 0.3 s; OpenSim's names."""
+    columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in NEEDED}
+    for side in "rl":
+        columns[f"knee_angle_{side}"] = knee * TIME / TIME[-1]
+    return columns
+
+
+def write_mot(path, columns):
+    path.write_text(storage_text("t", MotionTable(tuple(columns), TIME, np.column_stack(list(columns.values())), True)))
+    return path
+
+
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory):
+    """The run of a followed recording with a mapping, walked by the command; both files are gone since."""
+    lab = tmp_path_factory.mktemp("lab")
+    recording = write_mot(lab / "Trial 3.MOT", bend())
+    (lab / "lab.yaml").write_text("hold: {Head_Motion: 0.05}\n")
+    told = file_hash(str(recording)), file_hash(str(lab / "lab.yaml"))
+    files = ["--follow", str(recording), "--mapping", str(lab / "lab.yaml"), "-o", str(lab / "run")]
+    result = CliRunner().invoke(app, ["walk", *files, "--no-replay", "--no-plots"])
+    assert result.exit_code == 0, result.output
+    recording.unlink()
+    (lab / "lab.yaml").unlink()
+    return lab / "run", told
+
+
+@pytest.fixture
+def run(walked, tmp_path):
+    """A copy elsewhere, to change."""
+    return Run.open(shutil.copytree(walked[0], tmp_path / "elsewhere"))
+
+
+def test_recording_and_mapping_are_kept_with_their_hashes(run, walked):
+    told = run.summary["provenance"]
+    assert (told["recording_sha256"], told["mapping_sha256"]) == walked[1]
+    assert file_hash(str(run.path / "recording.mot")) == told["recording_sha256"]
+    assert file_hash(str(run.path / "mapping.yaml")) == told["mapping_sha256"]
+    assert run.scenario.follow.file == str(run.path / "recording.mot")
+    assert {entry.name for entry in run.path.iterdir()} == {
+        "scenario.yaml",
+        "signals.parquet",
+        "summary.json",
+        "recording.mot",
+        "mapping.yaml",
+    }
+
+
+def test_moved_run_is_repeated_to_the_bit(run):
+    result = reproduce(run)
+    assert (result.bits_agree, result.notes) == (True, ())
+
+
+def test_moved_run_is_walked_again_from_its_scenario(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    quick = ["--no-replay", "--no-plots", "--duration", "0.02"]
+    result = CliRunner().invoke(app, ["walk", str(run.path / "scenario.yaml"), "-o", "again", *quick])
+    assert result.exit_code == 0, result.output
+    again = Run.open(tmp_path / "again")
+    assert again.summary["provenance"]["recording_sha256"] == run.summary["provenance"]["recording_sha256"]
+    np.testing.assert_array_equal(again["com.z"], run["com.z"][: again.signals.num_rows])
+
+
+@pytest.mark.parametrize("name", ["recording.mot", "mapping.yaml"])
+def test_copy_that_was_changed_is_noted(run, name):
+    (run.path / name).write_text((run.path / name).read_text() + "\n")
+    assert [note for note in reproduce(run).notes if note.endswith(f"{name} was changed since the run")]
+
+
+def test_copy_that_is_gone_is_said(run):
+    (run.path / "recording.mot").unlink()
+    with pytest.raises(ParameterError, match=r"recording\.mot is gone"):
+        reproduce(Run.open(run.path))
+
+
+def test_run_of_an_earlier_version_has_no_hash_of_its_mapping(run):
+    summary = run.summary
+    del summary["provenance"]["mapping_sha256"]
+    (run.path / "summary.json").write_text(json.dumps(summary))
+    assert reproduce(Run.open(run.path)).notes == ()
+
+
+def test_hash_of_a_scenario_does_not_know_where_its_files_are(tmp_path):
+    here, there = (load_scenario("thesis", {"follow.file": f"{folder}/t.mot"}) for folder in ("a", "b"))
+    assert scenario_hash(here) == scenario_hash(there)
+    assert scenario_hash(here) != scenario_hash(load_scenario("thesis", {"follow.ease_in": "0.5"}))
+
+
+def test_files_of_a_scenario_stand_beside_it(tmp_path, monkeypatch):
+    (tmp_path / "lab").mkdir()
+    (tmp_path / "lab" / "mine.yaml").write_text("follow: {file: t.mot, mapping: ../map.yaml}\n")
+    monkeypatch.chdir(tmp_path)
+    follow = load_scenario("lab/mine.yaml").follow
+    assert (follow.file, follow.mapping) == ("lab/t.mot", "lab/../map.yaml")
+    # What is set on the command line is said from where one stands; a full path stays.
+    assert load_scenario("lab/mine.yaml", {"follow.file": "other.mot"}).follow.file == "other.mot"
+    (tmp_path / "lab" / "mine.yaml").write_text(f"follow: {{file: {tmp_path}/t.mot}}\n")
+    assert load_scenario("lab/mine.yaml").follow.file == f"{tmp_path}/t.mot"
+
+
+def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
+    recording = write_mot(tmp_path / "t.mot", bend())
+    outcome = simulate(load_scenario("thesis", {"follow.file": str(recording), "duration": "0.01"}))
+    recording.rename(tmp_path / "moved.mot")
+    run = outcome.save(tmp_path / "run")
+    assert run.scenario.follow.file == str(recording)
+    assert run.summary["provenance"]["recording_sha256"] is None
+
+
+# Without physics.
+
+
+@pytest.fixture(scope="module")
+def kinematic(tmp_path_factory):
+    """The run of a recording that is shown without physics, and what was printed."""
+    folder = tmp_path_factory.mktemp("kinematic")
+    recording = write_mot(folder / "t.mot", bend())
+    result = CliRunner().invoke(app, ["walk", "--follow", str(recording), "--kinematic", "-o", str(folder / "run")])
+    assert result.exit_code == 0, result.output
+    return Run.open(folder / "run"), result.stderr
+
+
+def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
+    run, printed = kinematic
+    assert "no physics" in printed
+    assert {entry.name for entry in run.path.iterdir()} == {
+        "scenario.yaml",
+        "signals.parquet",
+        "summary.json",
+        "recording.mot",
+        "replay.html",
+    }
+    assert run.summary["physics"] is False
+    assert run.summary["end"] == "completed"
+
+
+def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
+    run, _ = kinematic
+    motion = followed_motion(run.scenario)
+    for row in (0, 20, -1):
+        angles, rates = motion.joints(run.time[row])
+        for i, name in enumerate(joints.names):
+            assert run[f"{name}.angle"][row] == angles[i]
+            assert run[f"{name}.velocity"][row] == rates[i]
+        pelvis = motion.pelvis(run.time[row])
+        place = [run[f"pelvis.{axis}"][row] for axis in "xyz"]
+        np.testing.assert_allclose(place, pelvis.X_WP.translation(), atol=1e-15)
+    assert np.rad2deg(run["RightLegTibiaMotion.angle"][-1]) > 5.0
+
+
+def test_kinematic_run_claims_no_force_torque_or_effort(kinematic):
+    run, _ = kinematic
+    assert [name for name in run.signals.column_names if name.endswith(("_N", "_N_m", "saturated", "loaded"))] == []
+    summary = run.summary
+    assert summary["peak_torque_N_m"] == summary["saturated_share"] == {}
+    assert summary["external_support"] is False
+    for key in ("cost_of_transport", "steps", "gait"):
+        assert summary[key] is None
+    assert summary["foot_lift_m"] == {"right": None, "left": None}
+
+
+@pytest.mark.parametrize(
+    "command", [("plot",), ("report",), ("export", "--to", "opensim"), ("export", "--to", "c3d")], ids=str
+)
+def test_what_needs_forces_refuses_a_kinematic_run_in_a_line(kinematic, command):
+    run, _ = kinematic
+    with pytest.raises(ParameterError, match="a kinematic run has no forces and no torques; allowed"):
+        CliRunner().invoke(app, [command[0], str(run.path), *command[1:]], catch_exceptions=False)
+
+
+def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
+    run, _ = kinematic
+    result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    assert reproduce(run).bits_agree
+
+
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        ({"follow.kinematic": "true"}, "follow.kinematic: true without a recording"),
+        ({"follow.file": "t.mot", "controller": "balanced"}, "allowed: with controller thesis"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(overrides, said):
+    with pytest.raises(ParameterError, match=said):
+        load_scenario("thesis", overrides)
+
+
+def test_kinematic_without_a_recording_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="--kinematic: is for a recording"):
+        CliRunner().invoke(app, ["walk", "--kinematic", "-o", str(tmp_path / "run")], catch_exceptions=False)
+    assert not (tmp_path / "run").exists()
+
+
+# Angles beyond a joint's range.
+
+
+def test_angle_beyond_its_range_is_moved_and_told_in_a_line(tmp_path, caplog, joints):
+    columns = bend() | {"knee_angle_r": np.full_like(TIME, -3.0), "Head_Motion": np.full_like(TIME, 1.0)}
+    scenario = load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", columns))})
+    with caplog.at_level(logging.WARNING):
+        motion = followed_motion(scenario)
+    (record,) = caplog.records
+    said = record.getMessage()
+    knee = joints.names.index("RightLegTibiaMotion")
+    moved = np.rad2deg(joints.lower[knee] - np.deg2rad(-3.0))
+    assert said == (
+        f"{tmp_path}/t.mot: beyond the range of joints, moved to its end: RightLegTibiaMotion by up to {moved:.2g} deg"
+    )
+    np.testing.assert_array_equal(motion.angles[:, knee], joints.lower[knee])
+
+
+def test_angles_within_their_ranges_are_not_spoken_of(tmp_path, caplog):
+    with caplog.at_level(logging.WARNING):
+        followed_motion(load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", bend()))}))
+    assert caplog.records == []
