@@ -1,8 +1,9 @@
 """LeafSystem: where the feet and the centre of mass are."""
 
 import numpy as np
+from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
 from humanwalk.body import SIDES
 
@@ -25,30 +26,31 @@ class BodyObserver(LeafSystem):
         self._plant_context = plant.CreateDefaultContext()
         self._sole_frames = [plant.GetFrameByName(f"{side}Leg_Sole") for side in SIDES]
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        needs = {self.input_port_ticket(self._state.get_index())}
+        # Both outputs are asked for together: the body is put into its state once.
+        self._motion = self.DeclareCacheEntry(
+            "motion",
+            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_motion),
+            prerequisites_of_calc={self.input_port_ticket(self._state.get_index())},
+        )
+        needs = {self._motion.ticket()}
         self._soles_output = self.DeclareVectorOutputPort("soles", 6, self._calc_soles, prerequisites_of_calc=needs)
         self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
 
-    def _update(self, context: Context) -> Context:
-        self._plant.SetPositionsAndVelocities(self._plant_context, self._state.Eval(context))
-        return self._plant_context
+    def _calc_motion(self, context: Context, motion: Value) -> None:
+        plant, body = self._plant, self._plant_context
+        plant.SetPositionsAndVelocities(body, self._state.Eval(context))
+        soles = [frame.CalcPoseInWorld(body).translation() for frame in self._sole_frames]
+        com = (
+            plant.CalcCenterOfMassPositionInWorld(body),
+            plant.CalcCenterOfMassTranslationalVelocityInWorld(body),
+        )
+        motion.set_value((np.concatenate(soles), np.concatenate(com)))
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:
-        plant_context = self._update(context)
-        output.SetFromVector(
-            np.concatenate([frame.CalcPoseInWorld(plant_context).translation() for frame in self._sole_frames])
-        )
+        output.SetFromVector(self._motion.Eval(context)[0])
 
     def _calc_com(self, context: Context, output: BasicVector) -> None:
-        plant_context = self._update(context)
-        output.SetFromVector(
-            np.concatenate(
-                (
-                    self._plant.CalcCenterOfMassPositionInWorld(plant_context),
-                    self._plant.CalcCenterOfMassTranslationalVelocityInWorld(plant_context),
-                )
-            )
-        )
+        output.SetFromVector(self._motion.Eval(context)[1])
 
     def get_state_input_port(self) -> InputPort:
         """Input state."""
