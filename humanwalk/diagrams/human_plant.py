@@ -61,8 +61,6 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
     instance = add_human(plant, scenario.subject)
     add_level_ground(plant, scenario.contact)
     plant.set_contact_model(CONTACT_MODELS[scenario.contact])
-    # Outputs then are of the present state, as everything else that is recorded, and each step is 8 % quicker.
-    plant.SetUseSampledOutputPorts(False)
     if plant.time_step() > 0:
         plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])
     kp, kd = human_gains(scenario)

@@ -209,6 +209,36 @@ def test_the_semi_implicit_law_is_stable_with_the_thesis_gains(gains, time_step)
     assert perturbed_run(time_step, gains, "semi_implicit", steps=300) < 0.01
 
 
+@pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
+def test_the_torque_shown_is_what_moved_the_body_in_the_step_that_just_ended(gains, law):
+    """From rest, M v' = tau h less the joints' own damping; at an impact any other moment's v would be far off."""
+    h = 0.001
+    _, bare = floating_human(h, None)
+    builder, plant = floating_human(h, gains, law=law)
+    joints = JointMap.of(plant)
+    bank = builder.AddSystem(PdActuatorBank(plant, *gains, law))
+    # A jolt: away from the posture at once, by less than a limit stops.
+    desired = builder.AddSystem(ConstantVectorSource(np.concatenate((np.full(N, 1e-4), np.zeros(N)))))
+    builder.Connect(desired.get_output_port(), bank.get_desired_state_input_port())
+    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
+    builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
+    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    if law == "implicit":
+        human = plant.GetModelInstanceByName("human")
+        builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human))
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    context = plant.GetMyContextFromRoot(simulator.get_context())
+    M = plant.CalcMassMatrix(context)
+    simulator.AdvanceTo(h)
+    v = plant.GetVelocities(context)
+    own = [bare.get_joint_actuator(JointActuatorIndex(i)).joint().default_damping_vector()[0] for i in range(N)]
+    felt = (M @ v / h)[joints.v] + own * v[joints.v]
+    shown = bank.get_torque_output_port().Eval(bank.GetMyContextFromRoot(simulator.get_context()))
+    assert np.abs(felt).max() > 0.1
+    np.testing.assert_allclose(shown, felt, rtol=1e-3, atol=1e-4 * np.abs(felt).max())
+
+
 # ---- between samples
 
 
