@@ -101,6 +101,19 @@ def test_ctrl_c_keeps_everything_until_then(tmp_path):
     assert names(run.path) == THREE
 
 
+def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
+    """As with `humanwalk walk 2>&1 | head -1`."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WALK, "walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stderr.readline() == b"thesis: walking 0.1 s\n"
+    process.stderr.close()
+    assert process.wait(timeout=60) == 0
+    assert Run.open(tmp_path / "run").summary["end"] == "completed"
+
+
 def test_two_runs_do_not_write_into_one_folder(tmp_path):
     first = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
     try:
