@@ -1,14 +1,17 @@
-"""Makes every picture and video of the book anew: python docs/make_gallery.py (a quarter of an hour), or make gallery.
+"""Makes every picture and video of the book anew: python docs/make_gallery.py (half an hour), or make gallery.
 
-Needs the extra `video` and a Chromium. Simulations are kept under runs/gallery: remove it to walk them again.
+With names of shots, as in `python docs/make_gallery.py walk brisk`, it makes those only. Needs the extra `video` and a
+Chromium. Simulations are kept under runs/gallery: remove it to walk them again.
 """
 
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from rich.console import Console
 
-from humanwalk.diagrams.walker import make_walker
+from humanwalk.diagrams.choose import make_diagram
 from humanwalk.run.diagram_picture import draw_diagram
 from humanwalk.run.files import make_folder
 from humanwalk.run.folder import Run
@@ -22,14 +25,6 @@ DOCS = Path(__file__).parent
 GALLERY, IMAGES = DOCS / "gallery", DOCS / "images"
 RUNS = Path("runs/gallery")
 
-FIGURES = (
-    "gait_cycle_angles",
-    "joint_power",
-    "ground_reaction",
-    "centre_of_pressure",
-    "support_force",
-    "joint_torques",
-)
 FIGURE_DPI = 120
 
 LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
@@ -38,11 +33,12 @@ LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
 
 @dataclass(frozen=True)
 class Shot:
-    """One run of the gallery: a video of some seconds and a strip of one stride, both in steady walking."""
+    """One run of the gallery, in steady walking: a strip of one stride, a video of some seconds, and figures."""
 
     scenario: str
     overrides: dict[str, str] = field(default_factory=dict)
     video: VideoParameters | None = None
+    figures: tuple[str, ...] = ()
     strip_begin: float = 6.0
 
 
@@ -50,7 +46,16 @@ CLIP = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.
 SIDE = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.0, view="side")
 
 SHOTS = {
-    "thesis": Shot("thesis", video=CLIP),
+    "walk": Shot("walk", video=CLIP, figures=("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")),
+    "brisk": Shot("brisk", video=SIDE, figures=("gait_cycle_angles",)),
+    "thesis": Shot(
+        "thesis",
+        video=CLIP,
+        figures=(
+            *("gait_cycle_angles", "joint_power", "ground_reaction", "centre_of_pressure"),
+            *("support_force", "joint_torques"),
+        ),
+    ),
     "thesis_12cm": Shot("thesis_12cm"),
     "comfortable": Shot("comfortable", video=SIDE),
     "bones": Shot("thesis", {"subject.look": "bones", "duration": "8"}),
@@ -65,25 +70,30 @@ def run_of(name: str, shot: Shot, console: Console) -> Run:
     return walk_and_write(shot.scenario, shot.overrides, folder, live=False, replay=True, plots=False, console=console)
 
 
-def main() -> None:
-    """Make everything."""
+def make_shot(name: str, shot: Shot, console: Console) -> None:
+    """Walk a shot, and draw its strip, video and figures."""
+    run = run_of(name, shot, console)
+    stride = run.summary["gait"]["stride_time_s"]["right"]
+    times = [round(shot.strip_begin + share * stride, 3) for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
+    write_snapshot(run.path, GALLERY / f"{name}.png", times, 240, 400, "side")
+    if shot.video is not None:
+        record_video(run.path, GALLERY / f"{name}.mp4", shot.video)
+    for plot in shot.figures:
+        figure = PLOTS[plot](run)
+        assert figure is not None, plot
+        save(figure, GALLERY / f"{name}_{plot}.png", FIGURE_DPI)
+    console.print(name)
+
+
+def main(names: Sequence[str]) -> None:
+    """Make the named shots, or, without a name, everything."""
     console = Console(stderr=True)
     make_folder(GALLERY)
-    for name, shot in SHOTS.items():
-        run = run_of(name, shot, console)
-        path = run.scenario.gait.path
-        stride = path.stride_time(run.scenario.gait.ramp.speed)
-        times = [round(shot.strip_begin + share * stride, 3) for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
-        write_snapshot(run.path, GALLERY / f"{name}.png", times, 240, 400, "side")
-        if shot.video is not None:
-            record_video(run.path, GALLERY / f"{name}.mp4", shot.video)
-        console.print(name)
-
+    for name in names or SHOTS:
+        make_shot(name, SHOTS[name], console)
+    if names:
+        return
     thesis = Run.open(RUNS / "thesis")
-    for name in FIGURES:
-        figure = PLOTS[name](thesis)
-        if figure is not None:
-            save(figure, GALLERY / f"{name}.png", FIGURE_DPI)
     duration = LOOP_LENGTH / thesis.scenario.gait.ramp.speed
     rate = LOOP_FRAMES / duration
     loop = VideoParameters(rate, 1.0, 480, 400, begin=LOOP_BEGIN, end=LOOP_BEGIN + (LOOP_FRAMES - 1) / rate)
@@ -91,9 +101,9 @@ def main() -> None:
 
     write_gait_figures(IMAGES / "thesis")
     for name in shipped_scenarios():
-        draw_diagram(make_walker(load_scenario(name)), IMAGES / f"diagram_{name}.svg")
+        draw_diagram(make_diagram(load_scenario(name)), IMAGES / f"diagram_{name}.svg")
     console.print(f"{GALLERY} and {IMAGES} are made")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

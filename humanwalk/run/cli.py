@@ -1,6 +1,7 @@
 """The command line: one function a command."""
 
 import logging
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,8 +22,18 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
+
+
+class _Console(Console):
+    def on_broken_pipe(self) -> None:
+        """Say no more to who has stopped to listen, and go on: rich would end the program, and a run be lost."""
+        self.quiet = True
+        with open(os.devnull, "w") as nowhere:
+            os.dup2(nowhere.fileno(), self.file.fileno())
+
+
 # No markup: a folder may well be named [2].
-console = Console(stderr=True, markup=False)
+console = _Console(stderr=True, markup=False)
 
 BAD_INPUT = 2
 FELL = 1

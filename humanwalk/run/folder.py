@@ -199,7 +199,8 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     rows = scenario.duration / scenario.recording.signal_period
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
-    with suppress(OSError):
+    # What cannot be read is refused by who reads it, with the reason.
+    with suppress(OSError, ValueError):
         needed += Path(scenario.follow.file).stat().st_size if scenario.follow.file else 0
     free = shutil.disk_usage(folder).free
     if free < needed:

@@ -95,10 +95,13 @@ class Angle:
     of: Callable[[pa.Table, Side], Array]
 
 
+JOINTS = {"hip": "LegFemurMotion", "knee": "LegTibiaMotion", "ankle": "LegAnkleMotion"}
+"""The sagittal joint of a leg by its name in ANGLES, without its side."""
+
 ANGLES = {
-    "hip": Angle("flexion", "hip_flexion_deg", partial(_joint, "LegFemurMotion")),
-    "knee": Angle("flexion", "knee_flexion_deg", partial(_joint, "LegTibiaMotion")),
-    "ankle": Angle("dorsiflexion", "ankle_dorsiflexion_deg", partial(_joint, "LegAnkleMotion")),
+    "hip": Angle("flexion", "hip_flexion_deg", partial(_joint, JOINTS["hip"])),
+    "knee": Angle("flexion", "knee_flexion_deg", partial(_joint, JOINTS["knee"])),
+    "ankle": Angle("dorsiflexion", "ankle_dorsiflexion_deg", partial(_joint, JOINTS["ankle"])),
     "pelvis tilt": Angle("forward", "pelvis_anterior_tilt_deg", partial(_pelvis, 2, 1, 1)),
     "pelvis obliquity": Angle("side up", "pelvis_up_obliquity_deg", partial(_pelvis, 1, 1, -1)),
     "pelvis rotation": Angle("side forward", "pelvis_internal_rotation_deg", partial(_pelvis, 0, -1, 1)),
@@ -314,12 +317,9 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls]
     yield Measure("least knee flexion, terminal stance", "deg", least, _people_late_stance_knee())
     cost = cost_of_transport(signals, time >= begin, mass)
     yield Measure("cost of transport", "", np.array([np.nan if cost is None else cost]))
-    for joint, motion, flexing, extending in (
-        ("hip", "LegFemurMotion", "flexion", "extension"),
-        ("knee", "LegTibiaMotion", "flexion", "extension"),
-        ("ankle", "LegAnkleMotion", "dorsiflexion", "plantarflexion"),
-    ):
-        for name, sign in ((flexing, 1), (extending, -1)):
+    for joint, motion in JOINTS.items():
+        bends = ("dorsiflexion", "plantarflexion") if joint == "ankle" else ("flexion", "extension")
+        for name, sign in zip(bends, (1, -1), strict=True):
             peaks = each(partial(peak_moments, signals, motion, sign)) / mass
             yield Measure(f"moment, {joint} {name}", "N m/kg", peaks)
 

@@ -17,7 +17,7 @@ from humanwalk.run.signals import TIME
 from humanwalk.run.simulate import simulate
 from humanwalk.run.walk import _write_or_rescue
 from humanwalk.scenario import load_scenario
-from humanwalk.systems import inverse_kinematics_solver
+from humanwalk.systems import inverse_kinematics_solver, whole_body_controller
 
 THREE = {SCENARIO, SIGNALS, SUMMARY}
 WALK = "from humanwalk.run.cli import main; main()"
@@ -99,6 +99,19 @@ def test_ctrl_c_keeps_everything_until_then(tmp_path):
     run = Run.open(tmp_path / "run")
     assert run.summary["end"] == "interrupted"
     assert names(run.path) == THREE
+
+
+def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
+    """As with `humanwalk walk 2>&1 | head -1`."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WALK, "walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stderr.readline() == b"thesis: walking 0.1 s\n"
+    process.stderr.close()
+    assert process.wait(timeout=60) == 0
+    assert Run.open(tmp_path / "run").summary["end"] == "completed"
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path):
@@ -206,7 +219,8 @@ def broken_from(monkeypatch, begin, breaks):
 
 
 def not_a_number(self, context, discrete):
-    discrete.set_value(self._groups[0], np.full(2 * self._n, np.nan))
+    group = self._groups[0]
+    discrete.set_value(group, np.full(discrete.value(group).size, np.nan))
 
 
 def throw(self, context, discrete):
@@ -321,3 +335,36 @@ def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
         process.communicate()
     assert len(addresses) >= 2
     assert set(addresses) <= LOOPBACK
+
+
+# The same for the walker on its own feet, whose program may fail.
+
+
+@pytest.mark.parametrize(
+    ("phase", "begin", "breaks"),
+    [(0, 0.1, throw), (1, 0.8, throw), (3, 1.4, throw), (2, 1.66, throw), (3, 1.4, not_a_number)],
+    ids=["standing", "weight shift", "single support", "double support", "not a number"],
+)
+def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
+    monkeypatch, tmp_path, phase, begin, breaks
+):
+    solve = whole_body_controller.WholeBodyController._solve
+
+    def broken(self, context, discrete):
+        status = solve(self, context, discrete)
+        if context.get_time() >= begin - 1e-9:
+            breaks(self, context, discrete)
+        return status
+
+    monkeypatch.setattr(whole_body_controller.WholeBodyController, "_solve", broken)
+    points = "[{time: 0.1, forward: 0.5}]"
+    outcome = simulate(load_scenario("walk", {"duration": str(begin + 0.1), "balanced.command.points": points}))
+    run = Run.open(outcome.save(tmp_path / "run").path)
+    assert outcome.end == "not a number" or outcome.end.startswith("solver failed: ")
+    assert run.summary["end"] == outcome.end
+    assert run.summary["survived"] is False
+    before = run.time < begin - 1e-9
+    assert run["planner.phase"][before][-1] == phase
+    assert run.time[before][-1] == pytest.approx(begin, abs=0.011)
+    for name in run.signals.column_names:
+        assert np.isfinite(run[name][before]).all(), name

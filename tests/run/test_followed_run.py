@@ -3,6 +3,7 @@
 import json
 import logging
 import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from humanwalk.body.opensim_names import COORDINATES
 from humanwalk.diagrams.followed import NEEDED, followed_motion
 from humanwalk.gait.motion_table import MotionTable, storage_text
 from humanwalk.quantity import ParameterError
-from humanwalk.run.cli import app
+from humanwalk.run.cli import app, main
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import file_hash, scenario_hash
 from humanwalk.run.reproduce import reproduce
@@ -234,6 +235,18 @@ def test_angle_beyond_its_range_is_moved_and_told_in_a_line(tmp_path, caplog, jo
         f"{tmp_path}/t.mot: beyond the range of joints, moved to its end: RightLegTibiaMotion by up to {moved:.2g} deg"
     )
     np.testing.assert_array_equal(motion.angles[:, knee], joints.lower[knee])
+
+
+def test_command_tells_it_in_one_line_of_its_own(tmp_path, monkeypatch, capfd):
+    recording = write_mot(tmp_path / "t.mot", bend() | {"knee_angle_r": np.full_like(TIME, -3.0)})
+    arguments = ["walk", "--follow", str(recording), "--kinematic", "-o", str(tmp_path / "run"), "--no-replay"]
+    monkeypatch.setattr(sys, "argv", ["humanwalk", *arguments])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert not end.value.code
+    (line,) = (line for line in capfd.readouterr().err.splitlines() if "range" in line)
+    assert line.startswith(f"humanwalk: {recording}: beyond the range of joints")
+    assert logging.getLogger("humanwalk").propagate
 
 
 def test_angles_within_their_ranges_are_not_spoken_of(tmp_path, caplog):

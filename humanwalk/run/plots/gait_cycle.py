@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from humanwalk.body import SIDES, Side
 from humanwalk.run.folder import Run
 from humanwalk.run.gait_measures import footfalls
-from humanwalk.run.human_likeness import ANGLES, CYCLE, Array, over_strides, people
+from humanwalk.run.human_likeness import ANGLES, CYCLE, JOINTS, Array, over_strides, people
 from humanwalk.run.plots.drawing import (
     LABEL_SIZE,
     PEOPLE,
@@ -20,9 +20,6 @@ from humanwalk.run.plots.drawing import (
     level,
     new_figure,
 )
-
-JOINTS = {"hip": "LegFemurMotion", "knee": "LegTibiaMotion", "ankle": "LegAnkleMotion"}
-"""The sagittal joint of a leg by its name in ANGLES, without its side."""
 
 
 def gait_cycle_angles(run: Run) -> Figure | None:
