@@ -74,8 +74,8 @@ def test_recording_is_followed_with_physics_and_shown_without(tmp_path):
 def test_comparison_with_people_is_of_every_height():
     found = example("compare_with_people").main((0.12, 0.2), duration=2.5)
     assert set(found) == {0.12, 0.2}
-    # A lower step bends the knee less beyond people's.
-    assert 1.0 > found[0.12] > found[0.2] > 0.5
+    # Both bend and straighten the knee when people do; how far is not what a correlation tells.
+    assert all(0.5 < correlation < 1.0 for correlation in found.values())
 
 
 def test_read_a_run_reads_what_a_script_saved(tmp_path):
