@@ -17,7 +17,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics, FrameMotion
-from humanwalk.control.step_planner import FootReference, FootTask, WalkingReference, com_acceleration
+from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]

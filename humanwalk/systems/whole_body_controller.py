@@ -10,7 +10,7 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Inpu
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.step_planner import FootTask, WalkingReference
+from humanwalk.control.walking_reference import FootTask, WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
 from humanwalk.systems.gait_planner import Plan
 

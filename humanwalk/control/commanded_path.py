@@ -1,0 +1,61 @@
+"""The way that the command lays over the ground, and the speed that brings the walker back to it.
+
+Points of the ground plane are complex numbers x + iy [m]; headings are angles about z [rad].
+"""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+
+from humanwalk.control.command import Command
+from humanwalk.control.scalars import clip
+from humanwalk.quantity import quantity
+
+
+@dataclass(frozen=True)
+class PathFollowing:
+    """How the walker keeps to its path: sideways to its lane, and along it to where the command has come to."""
+
+    lane_gain: float = quantity(0.3, "1/s", 0.0, 2.0)
+    """Sideways speed per distance from the path."""
+
+    lane_speed_limit: float = quantity(0.1, "m/s", 0.0, 0.5)
+    """Greatest such sideways speed."""
+
+    pace_gain: float = quantity(0.2, "1/s", 0.0, 2.0)
+    """Forward speed per distance behind the commanded place: so the mean speed is the commanded one."""
+
+    pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
+    """Greatest such forward speed."""
+
+    def correction(self, path: CommandedPath, place: complex) -> complex:
+        """Speed that is added to the commanded one, seen along the path's heading [m/s]."""
+        behind = (path.position - place) / cmath.exp(1j * path.heading)
+        return complex(
+            clip(self.pace_gain * behind.real, -self.pace_speed_limit, self.pace_speed_limit),
+            clip(self.lane_gain * behind.imag, -self.lane_speed_limit, self.lane_speed_limit),
+        )
+
+    def leashed(self, path: CommandedPath, place: complex) -> CommandedPath:
+        """The path, not farther ahead or behind than the pace makes up for: who was held up does not run after it."""
+        if self.pace_gain == 0.0:
+            return path
+        u = cmath.exp(1j * path.heading)
+        behind = (path.position - place) / u
+        leash = self.pace_speed_limit / self.pace_gain
+        return CommandedPath(path.position + u * (clip(behind.real, -leash, leash) - behind.real), path.heading)
+
+
+@dataclass(frozen=True)
+class CommandedPath:
+    """Where the command has come to [m], and where it heads [rad]."""
+
+    position: complex
+    heading: float
+
+    def advanced(self, command: Command, dt: float) -> CommandedPath:
+        """The same `dt` later: a piece of an arc, told by its middle heading."""
+        turn = command.turn * dt
+        way = command.speed * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
+        return CommandedPath(self.position + way, self.heading + turn)
