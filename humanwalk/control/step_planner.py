@@ -215,7 +215,9 @@ class StepPlanner:
             timing.step - timing.double_support,
             self.parameters.swing,
         )
-        swing = Swing(PlanarMotion(foot.position, foot.velocity), profile, foot.position, foot.yaw)
+        pace = command.speed * cmath.exp(1j * state.heading)
+        motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.push_off * pace)
+        swing = Swing(motion, profile, foot.position, foot.yaw)
         return replace(state, phase=Phase.SINGLE_SUPPORT, swing=swing)
 
     def _touch_down(self, state: PlannerState, body: BodyState, command: Command, moving: bool) -> PlannerState:
@@ -301,9 +303,10 @@ class StepPlanner:
                 is_first = state.elapsed - timing.double_support < 0.5 * self.period
                 goal = goal if is_first else swing.foothold + share * (goal - swing.foothold)
                 swing = replace(swing, foothold=goal)
-            motion = swing.motion.towards(
-                swing.foothold, remaining / rate, self.period, self.parameters.swing.jerk_limit
-            )
+            law = self.parameters.swing
+            pace = command.speed * u
+            landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
+            motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
             swing = replace(swing, motion=motion)
 
         feet: dict[Side, FootReference] = {
