@@ -47,7 +47,7 @@ class FootRockers:
         final = self.pitch * briskness(speed)
         s = min(since / duration, 1.0)
         pitch = (final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)
-        return FootReference(FootTask.HEEL_OFF, load, yaw, pitch=pitch)
+        return FootReference(FootTask.HEEL_OFF, load, yaw, pitch=pitch, toes=pitch[:2])
 
 
 def briskness(speed: float) -> float:

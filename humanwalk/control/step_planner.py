@@ -34,6 +34,9 @@ from humanwalk.control.swing_foot import PlanarMotion, SwingParameters, SwingPro
 from humanwalk.control.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference, other
 from humanwalk.quantity import quantity
 
+TOES_RELAXED = 0.4
+"""Share of the swing after which toes that were bent over the ground are straight again."""
+
 
 @dataclass(frozen=True)
 class StepTiming:
@@ -83,12 +86,13 @@ class StepPlannerParameters:
 
 @dataclass(frozen=True)
 class Swing:
-    """The foot in the air: its way over ground, its profile and the foothold it is going to."""
+    """The foot in the air: its way over ground, its profile, the foothold it is going to, yaw and toes as it left."""
 
     motion: PlanarMotion
     profile: SwingProfile
     foothold: complex
     start_yaw: float
+    start_toes: float
 
 
 @dataclass(frozen=True)
@@ -217,7 +221,8 @@ class StepPlanner:
         )
         pace = command.speed * cmath.exp(1j * state.heading)
         motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.push_off * pace)
-        swing = Swing(motion, profile, foot.position, foot.yaw)
+        left_as = self._other_foot(state, command, None, 1.0)
+        swing = Swing(motion, profile, foot.position, foot.yaw, left_as.toes[0])
         return replace(state, phase=Phase.SINGLE_SUPPORT, swing=swing)
 
     def _touch_down(self, state: PlannerState, body: BodyState, command: Command, moving: bool) -> PlannerState:
@@ -374,6 +379,8 @@ class StepPlanner:
             return FootReference(FootTask.FLAT, load, state.old_heading)
         progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
         profile = swing.profile.at(progress)
+        relaxed, slope = blend(progress / TOES_RELAXED)
+        slope *= rate / (TOES_RELAXED * (timing.step - timing.double_support))
         goal_yaw = state.heading + command.turn * timing.step
         return FootReference(
             FootTask.SWING,
@@ -382,6 +389,7 @@ class StepPlanner:
             swing.motion,
             (profile.height, rate * profile.height_rate, rate**2 * profile.height_acceleration),
             (profile.pitch, rate * profile.pitch_rate, rate**2 * profile.pitch_acceleration),
+            (swing.start_toes * (1.0 - relaxed), -swing.start_toes * slope),
         )
 
     def _heel_is_up(self, state: PlannerState, command: Command) -> bool:

@@ -113,7 +113,9 @@ class SwingProfile:
             parameters: its shape.
         """
         apex = height + parameters.lift
-        heights = np.array((height, *(ground + np.array(HEIGHT_SHAPE) * (apex - ground)), ground - parameters.landing_depth))
+        heights = np.array(
+            (height, *(ground + np.array(HEIGHT_SHAPE) * (apex - ground)), ground - parameters.landing_depth)
+        )
         pitches = pitch + np.array(PITCH_BLEND) * (-toe_up - pitch)
         points = np.column_stack((heights, pitches))
         tangents = hermite_tangents(points)

@@ -75,6 +75,7 @@ class FootReference:
     load: largest share of its strength that the foot may press with, 0 to 1.
     position, height: of the ankle over ground and above it, with rates and accelerations (swing).
     yaw, pitch: of the foot; the rates and accelerations are the pitch's.
+    toes: extension of the toes and its rate.
     """
 
     task: FootTask
@@ -83,6 +84,7 @@ class FootReference:
     position: PlanarMotion = PlanarMotion(0.0)
     height: tuple[float, float, float] = (0.0, 0.0, 0.0)
     pitch: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    toes: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
