@@ -17,17 +17,27 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.analysis import InitializeParams, Simulator
+from pydrake.systems.framework import Context, Diagram
 
+from humanwalk.control.push import Push
+from humanwalk.diagrams.choose import make_diagram
 from humanwalk.run.measures import cost_of_transport, steady_from
+from humanwalk.run.monitor import Monitor
 from humanwalk.run.signals import TIME
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.systems.push_source import PushSource
 
 JOINT_NOISE = 0.01
 """Standard deviation of the initial posture in the rows with seeds [rad]."""
 
 PUSH_TIMES = [8.0 + 1.04 * share for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
 """Five timings over a stride, in the steady walk [s]."""
+
+AFTER_PUSH = 5.0
+"""Who is up this long after a push has survived it [s]: nine steps."""
 
 
 def walk(speed: float, duration: float, **overrides: str) -> Scenario:
@@ -52,11 +62,15 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
         "qp_failures": int(signals["qp.failures"].to_numpy().max()),
         "realtime_factor": float(time[-1]) / outcome.wall_time,
     }
+    show(row)
+    return row
+
+
+def show(row: dict[str, Any]) -> None:
     print(
         "  ".join(f"{key} {value:.3f}" if isinstance(value, float) else f"{value}" for key, value in row.items()),
         flush=True,
     )
-    return row
 
 
 def speeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -72,12 +86,42 @@ def seeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 
 def pushes(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    for impulse in args.impulses:
-        for eighth in range(8):
-            for time in PUSH_TIMES:
-                push = f"[{{time: {time}, impulse: {impulse}, direction: {eighth * math.pi / 4}}}]"
-                scenario = walk(1.0, time + 6.0, **{"pushes.pushes": push})
-                yield measure(f"push {impulse:g} N s towards {45 * eighth} deg at {time:.2f} s", scenario)
+    """Walks once to the time of each push, and from there again for every impulse and direction."""
+    walker = make_diagram(walk(1.0, PUSH_TIMES[-1]))
+    before = Simulator(walker)
+    for time in PUSH_TIMES:
+        before.AdvanceTo(time)
+        for impulse in args.impulses:
+            for eighth in args.eighths:
+                push = Push(time=time, impulse=impulse, direction=eighth * math.pi / 4)
+                row = {"run": f"push {impulse:g} N s towards {45 * eighth} deg at {time:.2f} s"}
+                row |= pushed(walker, before.get_context().Clone(), push)
+                show(row)
+                yield row
+
+
+def pushed(walker: Diagram, context: Context, push: Push) -> dict[str, Any]:
+    """How the walk in a context goes on after a push."""
+    source, plant = walker.GetSubsystemByName("pushes"), walker.GetSubsystemByName("plant")
+    assert isinstance(source, PushSource)
+    assert isinstance(plant, MultibodyPlant)
+    source.set_pushes(source.GetMyMutableContextFromRoot(context), [push])
+    simulator = Simulator(walker, context)
+    monitor = Monitor(plant)
+    simulator.set_monitor(monitor)
+    try:
+        simulator.Initialize(InitializeParams(suppress_initialization_events=True))
+        simulator.AdvanceTo(push.time + AFTER_PUSH)
+        end = monitor.reason or "completed"
+    except RuntimeError as error:
+        end = monitor.reason or f"solver failed: {str(error).splitlines()[0]}"
+    after = simulator.get_context()
+    return {
+        "end": end,
+        "time_s": round(after.get_time(), 2),
+        "final_y_m": float(walker.GetOutputPort("com").Eval(after)[1]),
+        "qp_failures": int(walker.GetOutputPort("qp_status").Eval(after)[1]),
+    }
 
 
 def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -91,6 +135,7 @@ def main() -> None:
     parser.add_argument("what", choices=["speeds", "seeds", "pushes", "paths"])
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.3, 0.7, 1.0, 1.2, 1.4])
     parser.add_argument("--impulses", type=float, nargs="+", default=[30.0])
+    parser.add_argument("--eighths", type=int, nargs="+", default=list(range(8)), help="directions of pushes [45 deg]")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--duration", type=float, default=60.0, help="simulated time of a run [s]")
     parser.add_argument("--json", type=Path, help="file for the rows")

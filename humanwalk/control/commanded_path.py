@@ -23,7 +23,7 @@ class PathFollowing:
     lane_speed_limit: float = quantity(0.1, "m/s", 0.0, 0.5)
     """Greatest such sideways speed."""
 
-    pace_gain: float = quantity(0.2, "1/s", 0.0, 2.0)
+    pace_gain: float = quantity(0.1, "1/s", 0.0, 2.0)
     """Forward speed per distance behind the commanded place: so the mean speed is the commanded one."""
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)

@@ -16,10 +16,10 @@ class FootRockers:
     heel: float = quantity(0.15, "s", 0.02, 0.4)
     """A foot that landed on its heel is flat after this time."""
 
-    ball: float = quantity(0.08, "s", 0.0, 0.3)
+    ball: float = quantity(0.10, "s", 0.0, 0.3)
     """The heel rises this long before the other foot lands."""
 
-    pitch: float = quantity(0.7, "rad", 0.0, 1.2)
+    pitch: float = quantity(1.0, "rad", 0.0, 1.2)
     """Pitch of the foot that leaves, at the end of double support at 1 m/s and faster; in proportion below."""
 
     slowest: float = quantity(0.5, "m/s", 0.0, 3.0)

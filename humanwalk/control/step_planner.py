@@ -51,7 +51,7 @@ class StepTiming:
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
     """From quiet standing onto the first stance foot."""
 
-    early_touchdown: float = quantity(0.7, "", 0.3, 1.0)
+    early_touchdown: float = quantity(0.85, "", 0.3, 1.0)
     """Share of the single support after which a touch of the ground ends it."""
 
     touchdown_force: float = quantity(60.0, "N", 5.0, 500.0)
@@ -399,8 +399,10 @@ class StepPlanner:
     def _height(self, state: PlannerState, forward_speed: float) -> tuple[PlannerState, tuple[float, float, float]]:
         """Height of the centre of mass: its mean that follows the phase, and an arc over each stance leg."""
         law = self.parameters.height
-        share = law.standing if state.phase is Phase.STAND else law.walking
-        goal = share * self.standing_com_height
+        if state.phase is Phase.STAND:
+            goal = law.standing * self.standing_com_height
+        else:
+            goal = law.walking * self.standing_com_height - law.below_top(forward_speed)
         height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period)
         above = law.arc(state.elapsed, self.parameters.timing.step, forward_speed)
         reference = (state.height + above[0], state.height_rate + above[1], acceleration + above[2])

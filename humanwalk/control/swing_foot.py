@@ -9,11 +9,11 @@ import numpy as np
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.quantity import quantity
 
-HEIGHT_SHAPE = (1.0, 0.55, 0.25)
+HEIGHT_SHAPE = (1.0, 0.6, 0.27)
 """Height of the ankle at the three quarters within the swing, as a share of its apex: people's foot rises with the
 heel that leaves and is low again by the middle of the swing."""
 
-PITCH_BLEND = (0.0, 0.12, 0.52, 0.91, 1.0)
+PITCH_BLEND = (0.0, -0.04, 0.41, 0.87, 1.0)
 """Share of the pitch's way at the quarters of the swing (people's: 0.1, 0.5, 0.9)."""
 
 
@@ -21,7 +21,7 @@ PITCH_BLEND = (0.0, 0.12, 0.52, 0.91, 1.0)
 class SwingParameters:
     """Shape of the swing."""
 
-    lift: float = quantity(0.05, "m", 0.0, 0.3)
+    lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
 
     toe_up: float = quantity(0.25, "rad", 0.0, 0.6)
@@ -36,13 +36,13 @@ class SwingParameters:
     push_off: float = quantity(6.0, "1/s", 0.0, 30.0)
     """Acceleration of the foot over ground as it leaves, per speed of the walk."""
 
-    landing_pace: float = quantity(0.2, "", 0.0, 1.0)
+    landing_pace: float = quantity(0.25, "", 0.0, 1.0)
     """Speed of the foot over ground at touchdown, as a share of that of the walk."""
 
-    landing_brake: float = quantity(18.0, "1/s", 0.0, 50.0)
+    landing_brake: float = quantity(22.0, "1/s", 0.0, 50.0)
     """Deceleration of the foot over ground at touchdown, per speed of the walk: it is on its way until it lands."""
 
-    jerk_limit: float = quantity(20000.0, "m/s3", 500.0, 50000.0)
+    jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
     """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
 
 
