@@ -4,6 +4,7 @@
     python benchmarks/balance.py seeds --duration 30 --speeds 1.0 1.4 --seeds 20
     python benchmarks/balance.py pushes --impulses 30 60
     python benchmarks/balance.py paths
+    python benchmarks/balance.py invariance --duration 12
 
 Every run is printed as it ends; `--json FILE` keeps the rows.
 """
@@ -17,18 +18,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import InitializeParams, Simulator
 from pydrake.systems.framework import Context, Diagram
 
+from humanwalk.body import SIDES
+from humanwalk.control.command import CommandProfile
+from humanwalk.control.commanded_path import CommandedPath
 from humanwalk.control.push import Push
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.run.measures import cost_of_transport, steady_from
+from humanwalk.run.measures import cost_of_transport, steady_from, touchdowns
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.signals import TIME
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems.push_source import PushSource
+
+Array = npt.NDArray[np.float64]
 
 JOINT_NOISE = 0.01
 """Standard deviation of the initial posture in the rows with seeds [rad]."""
@@ -58,7 +65,9 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
         "speed_m_s": float(np.polyfit(time[steady], x[steady], 1)[0]) if several else None,
         "largest_y_m": float(np.abs(y[steady]).max()) if several else None,
         "final_y_m": float(y[-1]),
+        "off_path_m": off_path(scenario, x[::10], y[::10]),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
+        "steps": sum(len(touchdowns(signals, side)) for side in SIDES),
         "qp_failures": int(signals["qp.failures"].to_numpy().max()),
         "realtime_factor": float(time[-1]) / outcome.wall_time,
     }
@@ -124,27 +133,61 @@ def pushed(walker: Diagram, context: Context, push: Push) -> dict[str, Any]:
     }
 
 
+def invariance(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """The same walk with finer physics, finer control and another contact: steps and speed should not change."""
+    for contact in ("point", "hydroelastic"):
+        for time_step, period in ((0.001, 0.004), (0.0005, 0.004), (0.001, 0.002)):
+            label = f"{contact}, physics {1e3 * time_step:g} ms, control {1e3 * period:g} ms"
+            overrides = {
+                "contact": contact,
+                "simulation.time_step": str(time_step),
+                "balanced.control_period": str(period),
+            }
+            yield measure(label, walk(1.0, args.duration, **overrides))
+
+
 def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    for name in ("stand", "start_stop", "turn", "sideways", "backward"):
+    for name in args.scenarios:
         yield measure(name, load_scenario(name))
+
+
+def off_path(scenario: Scenario, x: Array, y: Array) -> float:
+    """Greatest distance [m] of the centre of mass from the curve that the command describes, whatever the time."""
+    profile = CommandProfile(scenario.balanced.command)
+    path, curve, dt = CommandedPath(complex(x[0], y[0]), 0.0), [], 0.01
+    for tick in range(round(scenario.duration / dt)):
+        curve.append(path.position)
+        path = path.advanced(profile.at(tick * dt), dt)
+    if curve[-1] != curve[-2]:
+        # The walker may be ahead of the command.
+        curve.extend(curve[-1] + step * (curve[-1] - curve[-2]) for step in range(1, 100))
+    return max(float(np.abs(np.array(curve) - complex(*point)).min()) for point in zip(x, y, strict=True))
+
+
+COMMANDS = {"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths, "invariance": invariance}
 
 
 def main() -> None:
     logging.getLogger("drake").setLevel(logging.ERROR)
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["speeds", "seeds", "pushes", "paths"])
+    parser.add_argument("what", choices=list(COMMANDS))
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.3, 0.7, 1.0, 1.2, 1.4])
     parser.add_argument("--impulses", type=float, nargs="+", default=[30.0])
     parser.add_argument("--eighths", type=int, nargs="+", default=list(range(8)), help="directions of pushes [45 deg]")
+    parser.add_argument(
+        "--scenarios", nargs="+", default=["stand", "start_stop", "turn", "corner", "sideways", "backward"]
+    )
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--duration", type=float, default=60.0, help="simulated time of a run [s]")
     parser.add_argument("--json", type=Path, help="file for the rows")
     args = parser.parse_args()
-    rows = list({"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths}[args.what](args))
-    survived = sum(row["end"] == "completed" for row in rows)
-    print(f"{survived} of {len(rows)} survived")
-    if args.json:
-        args.json.write_text(json.dumps(rows, indent=1) + "\n")
+    rows = []
+    for row in COMMANDS[args.what](args):
+        rows.append(row)
+        if args.json:
+            # After every run: a table that is not finished is of use too.
+            args.json.write_text(json.dumps(rows, indent=1) + "\n")
+    print(f"{sum(row['end'] == 'completed' for row in rows)} of {len(rows)} survived")
 
 
 if __name__ == "__main__":

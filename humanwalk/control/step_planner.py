@@ -229,17 +229,19 @@ class StepPlanner:
         """The swinging foot becomes the stance foot; both are where they are measured, so that no error adds up."""
         right, left = body.right.position, body.left.position
         middle = 0.5 * (right + left)
-        path = self.parameters.path.leashed(state.path, middle)
+        following = self.parameters.path
+        path = following.leashed(state.path, middle)
+        beside = path.beside(middle, command)
         return PlannerState(
             phase=Phase.DOUBLE_SUPPORT if moving else Phase.STAND,
             elapsed=0.0,
             stance=other(state.stance),
             right=right,
             left=left,
-            heading=path.heading,
+            heading=beside.heading,
             old_heading=state.heading,
             path=path,
-            to_path=self.parameters.path.correction(path, middle),
+            to_path=following.correction(path, beside, middle),
             height=state.height,
             height_rate=state.height_rate,
             walked=state.walked + 1 if moving else 0,
@@ -266,7 +268,8 @@ class StepPlanner:
         zmp = reference - rate / self.frequency + (1.0 + self.parameters.dcm_gain) * (xi - reference)
         zmp = self._supported(state, zmp, both=True)
         feet: dict[Side, FootReference] = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in SIDES}
-        next_state = replace(state, elapsed=state.elapsed + self.period)
+        path = state.path.advanced(command, self.period)
+        next_state = replace(state, elapsed=state.elapsed + self.period, path=path)
         next_state, height = self._height(next_state, 0.0)
         return next_state, self._reference(state, body, zmp, xi, reference, height, feet, state.middle)
 
