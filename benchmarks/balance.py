@@ -4,6 +4,7 @@
     python benchmarks/balance.py seeds --duration 30 --speeds 1.0 1.4 --seeds 20
     python benchmarks/balance.py pushes --impulses 30 60
     python benchmarks/balance.py paths
+    python benchmarks/balance.py invariance --duration 12
 
 Every run is printed as it ends; `--json FILE` keeps the rows.
 """
@@ -17,17 +18,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.analysis import InitializeParams, Simulator
+from pydrake.systems.framework import Context, Diagram
 
-from humanwalk.run.measures import cost_of_transport, steady_from
+from humanwalk.body import SIDES
+from humanwalk.control.command import CommandProfile
+from humanwalk.control.commanded_path import CommandedPath
+from humanwalk.control.push import Push
+from humanwalk.diagrams.choose import make_diagram
+from humanwalk.run.measures import cost_of_transport, steady_from, touchdowns
+from humanwalk.run.monitor import Monitor
 from humanwalk.run.signals import TIME
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.systems.push_source import PushSource
+
+Array = npt.NDArray[np.float64]
 
 JOINT_NOISE = 0.01
 """Standard deviation of the initial posture in the rows with seeds [rad]."""
 
 PUSH_TIMES = [8.0 + 1.04 * share for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
 """Five timings over a stride, in the steady walk [s]."""
+
+AFTER_PUSH = 5.0
+"""Who is up this long after a push has survived it [s]: nine steps."""
 
 
 def walk(speed: float, duration: float, **overrides: str) -> Scenario:
@@ -48,15 +65,21 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
         "speed_m_s": float(np.polyfit(time[steady], x[steady], 1)[0]) if several else None,
         "largest_y_m": float(np.abs(y[steady]).max()) if several else None,
         "final_y_m": float(y[-1]),
+        "off_path_m": off_path(scenario, x[::10], y[::10]),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
+        "steps": sum(len(touchdowns(signals, side)) for side in SIDES),
         "qp_failures": int(signals["qp.failures"].to_numpy().max()),
         "realtime_factor": float(time[-1]) / outcome.wall_time,
     }
+    show(row)
+    return row
+
+
+def show(row: dict[str, Any]) -> None:
     print(
         "  ".join(f"{key} {value:.3f}" if isinstance(value, float) else f"{value}" for key, value in row.items()),
         flush=True,
     )
-    return row
 
 
 def speeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -72,34 +95,99 @@ def seeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 
 def pushes(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    for impulse in args.impulses:
-        for eighth in range(8):
-            for time in PUSH_TIMES:
-                push = f"[{{time: {time}, impulse: {impulse}, direction: {eighth * math.pi / 4}}}]"
-                scenario = walk(1.0, time + 6.0, **{"pushes.pushes": push})
-                yield measure(f"push {impulse:g} N s towards {45 * eighth} deg at {time:.2f} s", scenario)
+    """Walks once to the time of each push, and from there again for every impulse and direction."""
+    walker = make_diagram(walk(1.0, PUSH_TIMES[-1]))
+    before = Simulator(walker)
+    for time in PUSH_TIMES:
+        before.AdvanceTo(time)
+        for impulse in args.impulses:
+            for eighth in args.eighths:
+                push = Push(time=time, impulse=impulse, direction=eighth * math.pi / 4)
+                row = {"run": f"push {impulse:g} N s towards {45 * eighth} deg at {time:.2f} s"}
+                row |= pushed(walker, before.get_context().Clone(), push)
+                show(row)
+                yield row
+
+
+def pushed(walker: Diagram, context: Context, push: Push) -> dict[str, Any]:
+    """How the walk in a context goes on after a push."""
+    source, plant = walker.GetSubsystemByName("pushes"), walker.GetSubsystemByName("plant")
+    assert isinstance(source, PushSource)
+    assert isinstance(plant, MultibodyPlant)
+    source.set_pushes(source.GetMyMutableContextFromRoot(context), [push])
+    simulator = Simulator(walker, context)
+    monitor = Monitor(plant)
+    simulator.set_monitor(monitor)
+    try:
+        simulator.Initialize(InitializeParams(suppress_initialization_events=True))
+        simulator.AdvanceTo(push.time + AFTER_PUSH)
+        end = monitor.reason or "completed"
+    except RuntimeError as error:
+        end = monitor.reason or f"solver failed: {str(error).splitlines()[0]}"
+    after = simulator.get_context()
+    return {
+        "end": end,
+        "time_s": round(after.get_time(), 2),
+        "final_y_m": float(walker.GetOutputPort("com").Eval(after)[1]),
+        "qp_failures": int(walker.GetOutputPort("qp_status").Eval(after)[1]),
+    }
+
+
+def invariance(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """The same walk with finer physics, finer control and another contact: steps and speed should not change."""
+    for contact in ("point", "hydroelastic"):
+        for time_step, period in ((0.001, 0.004), (0.0005, 0.004), (0.001, 0.002)):
+            label = f"{contact}, physics {1e3 * time_step:g} ms, control {1e3 * period:g} ms"
+            overrides = {
+                "contact": contact,
+                "simulation.time_step": str(time_step),
+                "balanced.control_period": str(period),
+            }
+            yield measure(label, walk(1.0, args.duration, **overrides))
 
 
 def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    for name in ("stand", "start_stop", "turn", "sideways", "backward"):
+    for name in args.scenarios:
         yield measure(name, load_scenario(name))
+
+
+def off_path(scenario: Scenario, x: Array, y: Array) -> float:
+    """Greatest distance [m] of the centre of mass from the curve that the command describes, whatever the time."""
+    profile = CommandProfile(scenario.balanced.command)
+    path, curve, dt = CommandedPath(complex(x[0], y[0]), 0.0), [], 0.01
+    for tick in range(round(scenario.duration / dt)):
+        curve.append(path.position)
+        path = path.advanced(profile.at(tick * dt), dt)
+    if curve[-1] != curve[-2]:
+        # The walker may be ahead of the command.
+        curve.extend(curve[-1] + step * (curve[-1] - curve[-2]) for step in range(1, 100))
+    return max(float(np.abs(np.array(curve) - complex(*point)).min()) for point in zip(x, y, strict=True))
+
+
+COMMANDS = {"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths, "invariance": invariance}
 
 
 def main() -> None:
     logging.getLogger("drake").setLevel(logging.ERROR)
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["speeds", "seeds", "pushes", "paths"])
+    parser.add_argument("what", choices=list(COMMANDS))
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.3, 0.7, 1.0, 1.2, 1.4])
     parser.add_argument("--impulses", type=float, nargs="+", default=[30.0])
+    parser.add_argument("--eighths", type=int, nargs="+", default=list(range(8)), help="directions of pushes [45 deg]")
+    parser.add_argument(
+        "--scenarios", nargs="+", default=["stand", "start_stop", "turn", "corner", "sideways", "backward"]
+    )
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--duration", type=float, default=60.0, help="simulated time of a run [s]")
     parser.add_argument("--json", type=Path, help="file for the rows")
     args = parser.parse_args()
-    rows = list({"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths}[args.what](args))
-    survived = sum(row["end"] == "completed" for row in rows)
-    print(f"{survived} of {len(rows)} survived")
-    if args.json:
-        args.json.write_text(json.dumps(rows, indent=1) + "\n")
+    rows = []
+    for row in COMMANDS[args.what](args):
+        rows.append(row)
+        if args.json:
+            # After every run: a table that is not finished is of use too.
+            args.json.write_text(json.dumps(rows, indent=1) + "\n")
+    print(f"{sum(row['end'] == 'completed' for row in rows)} of {len(rows)} survived")
 
 
 if __name__ == "__main__":

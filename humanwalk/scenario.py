@@ -117,6 +117,9 @@ class BalancedWalkParameters:
     control_period: float = quantity(0.004, "s", 0.001, 0.01)
     """Time between two plans and solutions."""
 
+    leg_contact: bool = True
+    """Whether one leg stops the other; else they pass through each other."""
+
 
 @dataclass(frozen=True)
 class SimulationParameters:

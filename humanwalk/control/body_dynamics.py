@@ -14,7 +14,7 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from humanwalk.body import SIDES, Side
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.joint_map import JointMap
-from humanwalk.control.step_planner import BodyState, FootState
+from humanwalk.control.walking_reference import BodyState, FootState
 
 Array = npt.NDArray[np.float64]
 

@@ -7,8 +7,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from humanwalk.control.step_planner import Command
 from humanwalk.quantity import ParameterError, quantity
+
+
+@dataclass(frozen=True)
+class Command:
+    """What the walker is asked for, seen along its own heading: speeds [m/s] and turn rate [rad/s]."""
+
+    forward: float = 0.0
+    sideways: float = 0.0
+    turn: float = 0.0
+
+    @property
+    def speed(self) -> complex:
+        """Forward and sideways as one complex number."""
+        return complex(self.forward, self.sideways)
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,19 @@ import numpy as np
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.quantity import quantity
 
-PITCH_BLEND = (0.0, 0.135, 0.603, 0.965, 1.0)
-"""Share of the pitch's way at the quarters of the swing: a quintic that is done at nine tenths of it."""
+HEIGHT_SHAPE = (1.0, 0.6, 0.27)
+"""Height of the ankle at the three quarters within the swing, as a share of its apex: people's foot rises with the
+heel that leaves and is low again by the middle of the swing."""
+
+PITCH_BLEND = (0.0, -0.04, 0.41, 0.87, 1.0)
+"""Share of the pitch's way at the quarters of the swing (people's: 0.1, 0.5, 0.9)."""
 
 
 @dataclass(frozen=True)
 class SwingParameters:
     """Shape of the swing."""
 
-    lift: float = quantity(0.05, "m", 0.0, 0.3)
+    lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
 
     toe_up: float = quantity(0.25, "rad", 0.0, 0.6)
@@ -29,7 +33,16 @@ class SwingParameters:
     landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
     """How far below the ground the swing aims, so that it ends by touching."""
 
-    jerk_limit: float = quantity(20000.0, "m/s3", 500.0, 50000.0)
+    push_off: float = quantity(6.0, "1/s", 0.0, 30.0)
+    """Acceleration of the foot over ground as it leaves, per speed of the walk."""
+
+    landing_pace: float = quantity(0.25, "", 0.0, 1.0)
+    """Speed of the foot over ground at touchdown, as a share of that of the walk."""
+
+    landing_brake: float = quantity(22.0, "1/s", 0.0, 50.0)
+    """Deceleration of the foot over ground at touchdown, per speed of the walk: it is on its way until it lands."""
+
+    jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
     """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
 
 
@@ -41,13 +54,15 @@ class PlanarMotion:
     velocity: complex = 0.0
     acceleration: complex = 0.0
 
-    def towards(self, goal: complex, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
-        """The motion `dt` later on the quintic that comes to rest at `goal` in `remaining` seconds.
+    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
+        """The motion `dt` later on the quintic that comes to `goal` in `remaining` seconds.
 
         The quintic is made anew at every call, so that the goal may move; its jerk is bounded.
         """
         r = max(remaining, 2.0 * dt)
-        jerk = 60.0 * (goal - self.position) / r**3 - 36.0 * self.velocity / r**2 - 9.0 * self.acceleration / r
+        jerk = 60.0 * (goal.position - self.position) / r**3
+        jerk -= (36.0 * self.velocity + 24.0 * goal.velocity) / r**2
+        jerk -= (9.0 * self.acceleration - 3.0 * goal.acceleration) / r
         if abs(jerk) > jerk_limit:
             jerk *= jerk_limit / abs(jerk)
         return PlanarMotion(
@@ -99,13 +114,7 @@ class SwingProfile:
         """
         apex = height + parameters.lift
         heights = np.array(
-            (
-                height,
-                height + 0.75 * parameters.lift,
-                apex,
-                ground + 0.45 * (apex - ground),
-                ground - parameters.landing_depth,
-            )
+            (height, *(ground + np.array(HEIGHT_SHAPE) * (apex - ground)), ground - parameters.landing_depth)
         )
         pitches = pitch + np.array(PITCH_BLEND) * (-toe_up - pitch)
         points = np.column_stack((heights, pitches))

@@ -17,7 +17,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics, FrameMotion
-from humanwalk.control.step_planner import FootReference, FootTask, WalkingReference, com_acceleration
+from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
@@ -66,7 +66,7 @@ class WholeBodyParameters:
     heel_strike: TaskGains = critical(600.0, 1000.0)
     """Rotation of a foot that landed on its heel."""
 
-    heel_off: TaskGains = critical(400.0, 20.0)
+    heel_off: TaskGains = critical(400.0, 40.0)
     """Pitch of a foot whose heel rises."""
 
     swing_position: TaskGains = critical(300.0, 50.0)
@@ -78,10 +78,10 @@ class WholeBodyParameters:
     swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
     """Greatest level acceleration that is asked of a swinging foot: a foothold that jumps must not upset the body."""
 
-    pelvis: TaskGains = critical(200.0, 20.0)
+    pelvis: TaskGains = critical(200.0, 5.0)
     """Rotation of the pelvis."""
 
-    chest: TaskGains = critical(150.0, 20.0)
+    chest: TaskGains = critical(150.0, 5.0)
     """Rotation of the ribs."""
 
     spine: TaskGains = critical(100.0, 0.3)

@@ -25,6 +25,7 @@ from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import joint_gains
 from humanwalk.control.whole_body_qp import is_foot_posture
 from humanwalk.diagrams.ground import add_level_ground
+from humanwalk.diagrams.leg_contact import add_leg_capsules, let_legs_touch
 from humanwalk.scenario import BalancedWalkParameters, Contact, Scenario
 from humanwalk.systems.pd_actuator_bank import install_gains
 
@@ -71,8 +72,13 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
         [plant.get_joint_actuator(JointActuatorIndex(i)).effort_limit() for i in range(plant.num_actuators())]
     )
     install_gains(plant, kp, kd, scenario.actuators.law)
+    legs_touch = scenario.controller == "balanced" and scenario.balanced.leg_contact
+    if legs_touch:
+        add_leg_capsules(plant, scenario.subject.skeleton)
     plant.Finalize()
     keep_one_contact_set(plant, scene_graph, scenario.contact)
+    if legs_touch:
+        let_legs_touch(plant, scene_graph)
     return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd, effort_limits)
 
 

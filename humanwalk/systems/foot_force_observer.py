@@ -28,6 +28,7 @@ class FootForceObserver(LeafSystem):
     def __init__(self, plant: MultibodyPlant, inspector: SceneGraphInspector) -> None:
         """Make the observer of a finalised plant; `inspector` tells which body a contact surface belongs to."""
         super().__init__()
+        self._world = plant.world_body().index()
         self._side_of_body = {
             int(plant.GetBodyByName(name).index()): place
             for place, side in enumerate(SIDES)
@@ -58,6 +59,8 @@ class FootForceObserver(LeafSystem):
 
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
+            if self._world not in (pair.bodyA_index(), pair.bodyB_index()):
+                continue  # one leg against the other
             f_B = pair.contact_force()
             tau_B = _cross(pair.contact_point(), f_B)
             add(int(pair.bodyB_index()), f_B, tau_B)

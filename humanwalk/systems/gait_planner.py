@@ -17,13 +17,11 @@ from pydrake.systems.framework import (
 
 from humanwalk.body import SIDES, Side
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.step_planner import (
-    Command,
+from humanwalk.control.command import Command
+from humanwalk.control.step_planner import PlannerState, StepPlanner, StepPlannerParameters
+from humanwalk.control.walking_reference import (
     FootTask,
     Phase,
-    PlannerState,
-    StepPlanner,
-    StepPlannerParameters,
     WalkingReference,
     other,
 )

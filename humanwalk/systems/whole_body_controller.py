@@ -10,7 +10,7 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Inpu
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.step_planner import FootTask, WalkingReference
+from humanwalk.control.walking_reference import WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
 from humanwalk.systems.gait_planner import Plan
 
@@ -116,9 +116,8 @@ class WholeBodyController(LeafSystem):
             rate[shoulder] = swing_rate
             angle[elbow] += 0.5 * max(swing, 0.0)
             foot = reference.foot(side)
-            if foot.task is FootTask.HEEL_OFF:
-                toes = self._index[f"{side}LegFootToesMotion"]
-                angle[toes], rate[toes], _ = foot.pitch
+            toes = self._index[f"{side}LegFootToesMotion"]
+            angle[toes], rate[toes] = foot.toes
         return Posture(angle, rate)
 
     def get_state_input_port(self) -> InputPort:

@@ -9,16 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from humanwalk.control.step_planner import (
-    BodyState,
-    Command,
-    FootState,
-    FootTask,
-    Phase,
-    StepPlanner,
-    StepPlannerParameters,
-    other,
-)
+from humanwalk.control.command import Command
+from humanwalk.control.step_planner import StepPlanner, StepPlannerParameters
+from humanwalk.control.walking_reference import BodyState, FootState, FootTask, Phase, other
 
 PERIOD = 0.004
 ANKLE = 0.068
@@ -148,12 +141,12 @@ def test_it_stops_and_stands_with_its_feet_side_by_side():
 
 
 def test_the_zero_moment_point_stays_over_the_stance_foot():
-    placement = PARAMETERS.placement
+    support = PARAMETERS.support
     for _, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.0, (3.0, 0.3 + 0.2j)):
         if reference.phase is Phase.SINGLE_SUPPORT and state.phase is Phase.SINGLE_SUPPORT:
             offset = reference.zmp - state.ankle(state.stance)
-            assert -placement.foot_back - 1e-9 <= offset.real <= placement.foot_front + 1e-9
-            assert abs(offset.imag) <= placement.foot_half_width + 1e-9
+            assert -support.back - 1e-9 <= offset.real <= support.front + 1e-9
+            assert abs(offset.imag) <= support.half_width + 1e-9
 
 
 def test_durations_do_not_depend_on_the_control_period():

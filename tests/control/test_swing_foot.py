@@ -15,7 +15,7 @@ def swing_to(goal_at, duration, jerk_limit=1e9):
     motion, t = PlanarMotion(0.0), 0.0
     path = [motion]
     while t < duration - 0.5 * DT:
-        motion = motion.towards(goal_at(t), duration - t, DT, jerk_limit)
+        motion = motion.towards(PlanarMotion(goal_at(t)), duration - t, DT, jerk_limit)
         t += DT
         path.append(motion)
     return path

@@ -8,8 +8,8 @@ import pytest
 from humanwalk.body import contact_spheres
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.step_planner import FootReference, FootTask, Phase, WalkingReference
 from humanwalk.control.swing_foot import PlanarMotion
+from humanwalk.control.walking_reference import FootReference, FootTask, Phase, WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp
 
 PARAMETERS = WholeBodyParameters()

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from humanwalk.control.step_planner import Phase, StepPlannerParameters
+from humanwalk.control.step_planner import StepPlannerParameters
+from humanwalk.control.walking_reference import Phase
 from humanwalk.systems.gait_planner import GaitPlanner, Plan
 
 PERIOD = 0.004

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from humanwalk.control.step_planner import Command, StepPlanner, StepPlannerParameters
+from humanwalk.control.command import Command
+from humanwalk.control.step_planner import StepPlanner, StepPlannerParameters
 from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.systems.gait_planner import Plan
 from humanwalk.systems.whole_body_controller import WholeBodyController

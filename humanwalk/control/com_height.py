@@ -1,0 +1,54 @@
+"""How high the centre of mass is carried: in an arc over each stance leg, as people vault over it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from humanwalk.quantity import quantity
+
+
+@dataclass(frozen=True)
+class ComHeight:
+    """Height of the centre of mass."""
+
+    walking: float = quantity(0.997, "", 0.8, 1.0)
+    """Height at the top of the arcs in walking, as a share of the height in straight standing."""
+
+    standing: float = quantity(0.985, "", 0.8, 1.0)
+    """The same in quiet standing."""
+
+    time: float = quantity(0.25, "s", 0.02, 2.0)
+    """Time constant with which the mean height changes."""
+
+    amplitude: float = quantity(0.014, "m", 0.0, 0.05)
+    """Of the arcs at 1 m/s, in proportion to the speed: longer steps need lower ones between two straight legs."""
+
+    lowest: float = quantity(0.03, "s", -0.3, 0.3)
+    """The height is lowest this long after a touchdown."""
+
+    def below_top(self, speed: float) -> float:
+        """How far the mean of the arcs is below their top at a forward speed [m]."""
+        return self.amplitude * abs(speed)
+
+    def approach(self, height: float, rate: float, goal: float, dt: float) -> tuple[float, float, float]:
+        """The mean height `dt` later, its rate, and its acceleration until then [m, m/s, m/s2]."""
+        acceleration = (goal - height) / self.time**2 - 2.0 * rate / self.time
+        rate += dt * acceleration
+        return height + dt * rate, rate, acceleration
+
+    def arc(self, since_touchdown: float, step: float, speed: float) -> tuple[float, float, float]:
+        """Height above the mean, with rate and acceleration [m, m/s, m/s2].
+
+        Args:
+            since_touchdown: [s].
+            step: duration of a step [s].
+            speed: forward [m/s].
+        """
+        amplitude, rate = self.below_top(speed), 2.0 * math.pi / step
+        angle = rate * (since_touchdown - self.lowest)
+        return (
+            -amplitude * math.cos(angle),
+            amplitude * rate * math.sin(angle),
+            amplitude * rate**2 * math.cos(angle),
+        )

@@ -1,0 +1,71 @@
+"""Where the next foot goes: as the error of the pendulum asks, within reach, and never across the other leg.
+
+Points of the ground plane are complex numbers x + iy [m]; a foothold is seen from the stance ankle along its heading.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from humanwalk.body import Side
+from humanwalk.control.scalars import clip
+from humanwalk.quantity import quantity
+
+
+@dataclass(frozen=True)
+class StepPlacement:
+    """Where feet go."""
+
+    width: float = quantity(0.16, "m", 0.08, 0.4)
+    """Between the lines of the two feet."""
+
+    narrowest: float = quantity(0.09, "m", 0.0, 0.3)
+    """Least sideways distance of a foothold from the stance foot: below, the legs would cross."""
+
+    widest: float = quantity(0.65, "m", 0.2, 1.0)
+    """Greatest sideways distance."""
+
+    longest: float = quantity(1.0, "m", 0.2, 1.5)
+    """Greatest distance forward or backward."""
+
+    hurry_narrower: float = quantity(0.07, "m", 0.0, 0.3)
+    """The clock hurries when the foothold that balance wants would miss `narrowest` by more than this."""
+
+    hurry_wider: float = quantity(0.35, "m", 0.2, 1.0)
+    """The clock hurries when that foothold is farther sideways than this."""
+
+    smoothing: float = quantity(0.02, "s", 0.0, 0.2)
+    """Time constant of the foothold."""
+
+    freeze: float = quantity(0.04, "s", 0.0, 0.2)
+    """The foothold is settled this long before touchdown."""
+
+    def within_reach(self, wanted: complex, stance: Side) -> tuple[complex, float]:
+        """The nearest foothold that legs reach uncrossed, and by how much the wanted one calls for a hurry [m]."""
+        outward = -1.0 if stance == "Left" else 1.0
+        width = outward * wanted.imag
+        beyond = max(
+            self.narrowest - self.hurry_narrower - width,
+            width - self.hurry_wider,
+            abs(wanted.real) - 0.95 * self.longest,
+            0.0,
+        )
+        foothold = complex(
+            clip(wanted.real, -self.longest, self.longest),
+            outward * clip(width, self.narrowest, self.widest),
+        )
+        return foothold, beyond
+
+
+def foothold_gain(frequency: float, double_support: float) -> float:
+    """How far the foothold follows the error of the DCM at touchdown.
+
+    The DCM counts from where the zero-moment point will be, which leaves the old foot only during double support.
+
+    Args:
+        frequency: of the pendulum [1/s].
+        double_support: its duration [s].
+    """
+    wt = frequency * double_support
+    return wt / (1.0 - math.exp(-wt))

@@ -1,0 +1,57 @@
+"""One leg stops the other, and nothing else is touched by its capsules."""
+
+import pytest
+
+from humanwalk.diagrams.choose import make_diagram
+from humanwalk.scenario import load_scenario
+
+CROSSED = {f"{side}LegFemurSideMotion": -0.2 for side in ("Right", "Left")}
+"""Adduction of both hips [rad]."""
+
+LEGS = ("Femur_Thigh", "Tibia", "Ankle")
+
+
+def pairs(diagram, **angles):
+    """The bodies that touch each other in a posture, without the ground."""
+    plant = diagram.GetSubsystemByName("plant")
+    context = diagram.CreateDefaultContext()
+    for name, angle in angles.items():
+        plant.GetJointByName(name).set_angle(plant.GetMyMutableContextFromRoot(context), angle)
+    query = diagram.GetOutputPort("query_object").Eval(context)
+    found = set()
+    for touch in query.ComputePointPairPenetration():
+        frames = (query.inspector().GetFrameId(shape) for shape in (touch.id_A, touch.id_B))
+        found.add(frozenset(plant.GetBodyFromFrameId(frame).name() for frame in frames))
+    return {pair for pair in found if not any(name.lower().startswith("world") for name in pair)}
+
+
+def walker(**overrides):
+    return make_diagram(load_scenario("stand", overrides))
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    return walker()
+
+
+def test_legs_that_stand_do_not_touch(diagram):
+    assert pairs(diagram) == set()
+
+
+def test_legs_that_cross_do(diagram):
+    crossed = pairs(diagram, **CROSSED)
+    assert crossed
+    for pair in crossed:
+        right, left = sorted(pair, reverse=True)
+        assert right.startswith("RightLeg_")
+        assert left.startswith("LeftLeg_")
+        assert all(name.split("_", 1)[1] in LEGS for name in pair)
+
+
+def test_a_bent_leg_does_not_touch_itself(diagram):
+    assert pairs(diagram, RightLegTibiaMotion=2.2, RightLegFemurMotion=1.2) == set()
+
+
+def test_without_it_they_pass_through_each_other():
+    ghost = walker(**{"balanced.leg_contact": "false"})
+    assert pairs(ghost, **CROSSED) == set()
