@@ -71,10 +71,11 @@ def test_recording_is_followed_with_physics_and_shown_without(tmp_path):
     assert all(run.summary["end"] == "completed" for run in runs.values())
 
 
-def test_comparison_with_people_is_of_the_height_that_is_asked_for():
-    ((height, correlation),) = example("compare_with_people").main((0.12,), duration=2.2).items()
-    assert height == 0.12
-    assert 0.5 < correlation < 1.0
+def test_comparison_with_people_is_of_every_height():
+    found = example("compare_with_people").main((0.12, 0.2), duration=2.5)
+    assert set(found) == {0.12, 0.2}
+    # Both bend and straighten the knee when people do; how far is not what a correlation tells.
+    assert all(0.5 < correlation < 1.0 for correlation in found.values())
 
 
 def test_read_a_run_reads_what_a_script_saved(tmp_path):
