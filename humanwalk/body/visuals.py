@@ -26,7 +26,7 @@ IRIS: Color = (0.16, 0.22, 0.28)
 SHIRT: Color = (0.70, 0.76, 0.79)
 TROUSERS: Color = (0.24, 0.30, 0.41)
 BELT: Color = (0.10, 0.08, 0.07)
-SOLE: Color = (0.93, 0.93, 0.91)
+SOLE: Color = (0.30, 0.31, 0.33)
 SIDE_COLORS: dict[Side, Color] = {"Right": (0.10, 0.42, 0.70), "Left": (0.87, 0.40, 0.10)}
 """Colour of shoes, cuffs and stripes; blue and orange stay apart for colour-blind eyes."""
 
