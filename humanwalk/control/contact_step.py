@@ -1,0 +1,257 @@
+"""One step of the asperity law on the bodies of a foot, implicit in their velocities.
+
+The law is stiff: under a toe, 0.2 kg, its damping alone would diverge as an explicit force at any step above 0.05 ms. So
+it is evaluated at the end of the step, where the bodies will be then. With the mobility G = J (M + D)^-1 J' of the
+bodies that touch (D: what the joints add implicitly), their velocities V, and the law's linearisation F = F0 - B V,
+
+    V(t + h) = V(t) + h a + h G F,    a = (V(t) - V(t - h)) / h - G F(t - h),
+
+is one linear system for V(t + h); a is what everything but the contact did in the last step. The law with all its
+bounds is then evaluated at that velocity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from humanwalk.control.asperity import (
+    AsperityParameters,
+    friction_coefficient,
+    friction_force,
+    normal_damping,
+    normal_force,
+    share,
+)
+from humanwalk.control.ground import Ground
+from humanwalk.control.ground_force import friction_use
+from humanwalk.control.stability import largest_stable_step
+
+Array = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+MOST_PASSES = 8
+"""How often a step is solved at most; sticking and steady sliding take one pass, a change between them two or three."""
+
+GRIP_TOLERANCE = 0.05
+"""Relative change of a grip that is worth another pass."""
+
+CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(1, 2, 0).reshape(3, 9)
+"""a CROSS, as a matrix (3, 3) times r, is r x a."""
+
+
+@dataclass(frozen=True)
+class ContactMemory:
+    """What one step leaves to the next, of b bodies with k points each.
+
+    Attributes:
+        anchor: where each point's spring is fastened, p_WA [m], shape (b, k, 3).
+        load: running mean of the normal force [N], shape (b, k).
+        grip: share of the linear friction that Coulomb's bound left, 1 while it sticks; shape (b, k).
+        V: velocities of the bodies [rad/s, m/s], shape (b, 6).
+        F: spatial forces of the contact on the bodies at their origins [N m, N], shape (b, 6).
+    """
+
+    anchor: Array
+    load: Array
+    grip: Array
+    V: Array
+    F: Array
+
+    @staticmethod
+    def fresh(p_WQ: Array, V: Array) -> ContactMemory:
+        """Of points, shape (b, k, 3), that have touched nothing yet, on bodies with velocities V, shape (b, 6)."""
+        return ContactMemory(p_WQ, np.zeros(p_WQ.shape[:2]), np.ones(p_WQ.shape[:2]), V, np.zeros_like(V))
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """All contacts at one time; of b bodies with k points each.
+
+    Attributes:
+        normal: force on each point along the surface's normal [N], shape (b, k).
+        friction: force on each point along the surface [N], complex, shape (b, k).
+        bound: mu f_n, what friction may reach [N], shape (b, k).
+        depth: below the surface [m], negative above it; shape (b, k).
+        X: Jacobians of the points, see `point_jacobians`.
+        held: stretch of the asperity springs [m], complex, shape (b, k).
+        p_WB: origins of the bodies [m], shape (b, 3).
+        R_SW: axes of the surface, see `Ground`.
+        memory: for the next step.
+    """
+
+    normal: Array
+    friction: Complex
+    bound: Array
+    depth: Array
+    X: Array
+    held: Complex
+    p_WB: Array
+    R_SW: Array
+    memory: ContactMemory
+
+    @property
+    def force(self) -> Array:
+        """On each point, in W [N], shape (b, k, 3)."""
+        force: Array = np.vecmat(_components(self.friction, self.normal), self.R_SW)
+        return force
+
+    def total(self, bodies: slice) -> tuple[Array, Array]:
+        """Force on some of the bodies [N] and its moment about the world's origin [N m], in W, shape (3,) each."""
+        tau, f = np.split(self.memory.F[bodies], 2, axis=1)
+        return f.sum(axis=0), (tau + np.cross(self.p_WB[bodies], f)).sum(axis=0)
+
+    def friction_use(self, bodies: slice) -> float:
+        """Friction on some of the bodies as a share of the most that the ground could give; 0 without contact."""
+        friction = np.vecmat(_components(self.friction[bodies]), np.broadcast_to(self.R_SW, (*self.normal.shape, 3, 3))[bodies][..., :2, :])
+        return friction_use(friction.sum(axis=(0, 1)), float(self.bound[bodies].sum()))
+
+    @property
+    def stretch(self) -> Array:
+        """Of the asperity springs [m], shape (b, k)."""
+        return np.abs(self.held)
+
+    @property
+    def slip(self) -> Array:
+        """Speed along the surface of the points that press on it [m/s], 0 for the others; shape (b, k)."""
+        return np.abs(_velocities(self.X, self.memory.V)[0]) * (self.normal > 0.0)
+
+
+def contact_step(
+    parameters: AsperityParameters,
+    ground: Ground,
+    area: Array,
+    p_WB: Array,
+    p_WQ: Array,
+    V: Array,
+    memory: ContactMemory,
+    mobility: Array,
+    step: float,
+    time: float,
+) -> Contacts:
+    """The contacts of b bodies with k points each.
+
+    Args:
+        parameters: of the law.
+        ground: the surface.
+        area: of the points [m2], shape (b, k).
+        p_WB: origins of the bodies [m], shape (b, 3).
+        p_WQ: points [m], shape (b, k, 3).
+        V: velocities of the bodies at their origins, in W [rad/s, m/s], shape (b, 6).
+        memory: what the last step left.
+        mobility: G, in W at the origins, shape (6 b, 6 b); of zeros, the law is explicit.
+        step: h [s].
+        time: [s].
+    """
+    b, k = area.shape
+    height, R_SW = ground(p_WQ)
+    depth = -height
+    X = point_jacobians(p_WQ - p_WB[:, None], R_SW)
+
+    stretch, _ = _split(np.matvec(R_SW, p_WQ - memory.anchor))
+    blocks = step * mobility.reshape(6 * b, b, 6).swapaxes(0, 1)
+
+    # Where everything would go without this step's contact, and which points would then press.
+    free = 2.0 * V - memory.V - step * (mobility @ memory.F.ravel()).reshape(b, 6)
+    _, rate = _velocities(X, free)
+    presses = normal_force(parameters, area, depth + step * rate, rate) != 0.0
+    grip = memory.grip
+    for _ in range(MOST_PASSES):
+        # The law's linearisation F0 - S v, for the points that are thought to press, with the grip that they had.
+        touching = area * presses
+        gripping = touching * grip
+        S = np.empty((b, k, 3))
+        S[..., :2] = (gripping * (parameters.velocity_stiffness + step * parameters.spring_stiffness))[..., None]
+        S[..., 2] = touching * (normal_damping(parameters, rate) + step * parameters.normal_stiffness)
+        f_t = -parameters.spring_stiffness * gripping * stretch
+        f_n = touching * (parameters.normal_pressure + parameters.normal_stiffness * depth)
+        system = (blocks @ (X.mT @ (S.reshape(b, 3 * k, 1) * X))).swapaxes(0, 1).reshape(6 * b, 6 * b)
+        system.flat[:: 6 * b + 1] += 1.0
+        end = np.linalg.solve(system, free.ravel() + step * (mobility @ _wrenches(X, f_t, f_n).ravel()))
+
+        # The law itself, there; once more if it finds other points pressing or sliding than was thought.
+        velocity, rate = _velocities(X, end.reshape(b, 6))
+        f_n = normal_force(parameters, area, depth + step * rate, rate)
+        load = parameters.averaging * memory.load + (1.0 - parameters.averaging) * f_n
+        # A load that falls faster than its mean must not leave more friction than mu times what is left of it.
+        bound = friction_coefficient(parameters, f_n / area, time) * np.maximum(0.0, np.minimum(load, f_n))
+        wanted = stretch + step * velocity
+        f_t, held = friction_force(parameters, area, wanted, velocity, bound)
+        linear = area * np.abs(parameters.spring_stiffness * wanted + parameters.velocity_stiffness * velocity)
+        thought, presses = presses, f_n != 0.0
+        assumed, grip = grip, np.where(presses, share(np.abs(f_t), linear), 1.0)
+        if (thought == presses).all() and (np.abs(grip - assumed) <= GRIP_TOLERANCE * assumed).all():
+            break
+    return Contacts(
+        normal=f_n,
+        friction=f_t,
+        bound=bound,
+        depth=depth,
+        X=X,
+        held=held,
+        p_WB=p_WB,
+        R_SW=R_SW,
+        memory=ContactMemory(
+            anchor=p_WQ + np.vecmat(_components(step * velocity - held), R_SW[..., :2, :]),
+            load=load * presses,
+            grip=grip,
+            V=V,
+            F=_wrenches(X, f_t, f_n),
+        ),
+    )
+
+
+def point_jacobians(r: Array, R_SW: Array) -> Array:
+    """From [angular; translational] velocities of bodies in W to those of points at r from their origins, in S.
+
+    Args:
+        r: in W [m], shape (b, k, 3).
+        R_SW: axes of the surface, shape (3, 3) or (b, k, 3, 3).
+
+    Returns:
+        Rows [r x axis, axis] for the three axes of each point, shape (b, 3 k, 6).
+    """
+    b, k = r.shape[:2]
+    X = np.empty((b, k, 3, 6))
+    X[..., :3] = np.matvec((R_SW @ CROSS).reshape(*R_SW.shape, 3), r[..., None, :])
+    X[..., 3:] = R_SW
+    return X.reshape(b, 3 * k, 6)
+
+
+def body_mobility(M: Array, J: Array, joint_impedance: Array) -> Array:
+    """G = J (M + D)^-1 J': how fast impulses on bodies move them; shape (m, m).
+
+    Args:
+        M: mass matrix, shape (nv, nv).
+        J: stacked Jacobians of the bodies' velocities, shape (m, nv).
+        joint_impedance: D, what a step of implicit joint laws adds to the diagonal, shape (nv,).
+    """
+    G: Array = J @ np.linalg.solve(M + np.diag(joint_impedance), J.T)
+    return G
+
+
+def _split(vectors: Array) -> tuple[Complex, Array]:
+    """Of vectors in S, shape (b, k, 3): what is along the surface, complex, and what is along its normal; (b, k)."""
+    return vectors[..., :2].view(np.complex128)[..., 0], vectors[..., 2]
+
+
+def _components(along: Complex, normal: Array | None = None) -> Array:
+    """Vectors in S, shape (b, k, 3), or (b, k, 2) without a normal; the inverse of `_split`."""
+    components: Array = np.ascontiguousarray(along)[..., None].view(np.float64)
+    return components if normal is None else np.concatenate((components, normal[..., None]), axis=-1)
+
+
+def _velocities(X: Array, V: Array) -> tuple[Complex, Array]:
+    """Of the points, along the surface and into it, shape (b, k) each, from those of the bodies, shape (b, 6)."""
+    b, rows = X.shape[:2]
+    along, normal = _split((X @ V[..., None]).reshape(b, rows // 3, 3))
+    return along, -normal
+
+
+def _wrenches(X: Array, f_t: Complex, f_n: Array) -> Array:
+    """Spatial forces at the bodies' origins in W, shape (b, 6), of forces on the points, shape (b, k)."""
+    b, rows = X.shape[:2]
+    wrenches: Array = (_components(f_t, f_n).reshape(b, 1, rows) @ X)[:, 0]
+    return wrenches
