@@ -32,8 +32,11 @@ from humanwalk.control.stability import largest_stable_step
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-MOST_PASSES = 8
+MOST_PASSES = 10
 """How often a step is solved at most; sticking and steady sliding take one pass, a change between them two or three."""
+
+WHOLE_PASSES = 3
+"""Passes after which one goes only half the way: points that press in one pass and not in the next would alternate."""
 
 GRIP_TOLERANCE = 0.05
 """Relative change of a grip that is worth another pass."""
@@ -158,7 +161,8 @@ def contact_step(
     _, rate = _velocities(X, free)
     presses = normal_force(parameters, area, depth + step * rate, rate) != 0.0
     grip = memory.grip
-    for _ in range(MOST_PASSES):
+    end = free.ravel()
+    for place in range(MOST_PASSES):
         # The law's linearisation F0 - S v, for the points that are thought to press, with the grip that they had.
         touching = area * presses
         gripping = touching * grip
@@ -169,7 +173,8 @@ def contact_step(
         f_n = touching * (parameters.normal_pressure + parameters.normal_stiffness * depth)
         system = (blocks @ (X.mT @ (S.reshape(b, 3 * k, 1) * X))).swapaxes(0, 1).reshape(6 * b, 6 * b)
         system.flat[:: 6 * b + 1] += 1.0
-        end = np.linalg.solve(system, free.ravel() + step * (mobility @ _wrenches(X, f_t, f_n).ravel()))
+        solved = np.linalg.solve(system, free.ravel() + step * (mobility @ _wrenches(X, f_t, f_n).ravel()))
+        end = solved if place < WHOLE_PASSES else 0.5 * (end + solved)
 
         # The law itself, there; once more if it finds other points pressing or sliding than was thought.
         velocity, rate = _velocities(X, end.reshape(b, 6))
