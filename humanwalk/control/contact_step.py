@@ -12,10 +12,15 @@ bounds is then evaluated at that velocity.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
+from pydrake.systems.framework import Context
+from scipy.linalg import block_diag
 
 from humanwalk.control.asperity import (
     AsperityParameters,
@@ -38,8 +43,12 @@ MOST_PASSES = 10
 WHOLE_PASSES = 3
 """Passes after which one goes only half the way: points that press in one pass and not in the next would alternate."""
 
-GRIP_TOLERANCE = 0.05
+GRIP_TOLERANCE = 0.25
 """Relative change of a grip that is worth another pass."""
+
+MOBILITY_MARGIN = 1.5
+"""Factor on the mobility: one that is a tenth too small would make a step of 1 ms unstable, one that is twice too great
+only lets the forces lag a little."""
 
 CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(1, 2, 0).reshape(3, 9)
 """a CROSS, as a matrix (3, 3) times r, is r x a."""
@@ -225,16 +234,85 @@ def point_jacobians(r: Array, R_SW: Array) -> Array:
     return X.reshape(b, 3 * k, 6)
 
 
-def body_mobility(M: Array, J: Array, joint_impedance: Array) -> Array:
-    """G = J (M + D)^-1 J': how fast impulses on bodies move them; shape (m, m).
+def body_jacobians(plant: MultibodyPlant, context: Context, bodies: Sequence[RigidBody]) -> Array:
+    """Stacked Jacobians of the bodies' [angular; translational] velocities at their origins, in W, shape (6 b, nv)."""
+    world = plant.world_frame()
+    return np.vstack(
+        [
+            plant.CalcJacobianSpatialVelocity(
+                context, JacobianWrtVariable.kV, body.body_frame(), np.zeros(3), world, world
+            )
+            for body in bodies
+        ]
+    )
+
+
+def body_mobility(M: Array, J: Array, added: Array) -> Array:
+    """G = J (M + D)^-1 J', how fast impulses on bodies move them, with a margin; shape (m, m).
 
     Args:
         M: mass matrix, shape (nv, nv).
         J: stacked Jacobians of the bodies' velocities, shape (m, nv).
-        joint_impedance: D, what a step of implicit joint laws adds to the diagonal, shape (nv,).
+        added: D, what a step of the joints' law adds to the diagonal, shape (nv,).
     """
-    G: Array = J @ np.linalg.solve(M + np.diag(joint_impedance), J.T)
+    G: Array = MOBILITY_MARGIN * J @ np.linalg.solve(M + np.diag(added), J.T)
     return G
+
+
+def patch_impedance(r: Array, area: Array, R_SW: Array, along: float, across: float) -> Array:
+    """Spatial stiffness (or damping) of patches that press and stick with all their points.
+
+    Args:
+        r: points from the origins of their bodies, in W [m], shape (b, k, 3).
+        area: of the points [m2], shape (b, k).
+        R_SW: axes of the surface, shape (3, 3).
+        along, across: per area, along the normal and along the surface [N/m3 or N s/m3].
+
+    Returns:
+        [angular; translational] at the origins in W, block diagonal, shape (6 b, 6 b).
+    """
+    X = point_jacobians(r, R_SW)
+    weights = (area[..., None] * np.array([across, across, along])).reshape(len(r), -1, 1)
+    matrix: Array = block_diag(*(X.mT @ (weights * X)))
+    return matrix
+
+
+def largest_contact_step(
+    M: Array,
+    J: Array,
+    stiffness: Array,
+    damping: Array,
+    joint_law: Callable[[float], tuple[Array, Array]],
+    joint_stiffness: Array,
+    upper: float = 0.1,
+) -> float:
+    """Largest step [s] at which a body that stands on sticking patches stays bounded, linearised at rest.
+
+    The plant's step is (M + D) v' = (M - E) v - h Kp q + h J' F, q' = q + h v'; F is that of `contact_step`.
+
+    Args:
+        M: mass matrix, shape (nv, nv).
+        J: Jacobians of the bodies that touch, shape (m, nv).
+        stiffness, damping: of the contact, K and C, see `patch_impedance`, shape (m, m).
+        joint_law: D and E of the joints' law at a step h, shape (nv,) each.
+        joint_stiffness: Kp, shape (nv,).
+        upper: step beyond which nothing is looked for [s].
+    """
+    m, n = J.shape
+
+    def update(h: float) -> Array:
+        added, taken = joint_law(h)
+        solved, G = np.linalg.inv(M + np.diag(added)), body_mobility(M, J, added)
+        # The state is [q, v, V(t - h), F(t - h)]; F = -K J q - B V(t + h), V(t + h) = (1 + h G B)^-1 (free - h G K J q).
+        of_free = -np.linalg.solve((np.eye(m) + h * G @ (damping + h * stiffness)).T, damping + h * stiffness).T
+        F = np.hstack((-(stiffness + h * of_free @ G @ stiffness) @ J, 2.0 * of_free @ J, -of_free, -h * of_free @ G))
+        v = np.hstack((-h * solved * joint_stiffness, solved @ (M - np.diag(taken)), np.zeros((n, 2 * m))))
+        v += h * solved @ J.T @ F
+        q = h * v
+        q[:, :n] += np.eye(n)
+        return np.vstack((q, v, np.hstack((np.zeros((m, n)), J, np.zeros((m, 2 * m)))), F))
+
+    return largest_stable_step(update, upper)
 
 
 def _split(vectors: Array) -> tuple[Complex, Array]:
@@ -260,3 +338,4 @@ def _wrenches(X: Array, f_t: Complex, f_n: Array) -> Array:
     b, rows = X.shape[:2]
     wrenches: Array = (_components(f_t, f_n).reshape(b, 1, rows) @ X)[:, 0]
     return wrenches
+

@@ -1,20 +1,26 @@
 """What the ground does to the feet, whichever contact model the scenario has."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer
+from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer, MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder, OutputPort
 
 from humanwalk.body import SIDES, sole_patches
+from humanwalk.body.contact import SolePatch
+from humanwalk.control.asperity import AsperityParameters
+from humanwalk.control.contact_step import body_jacobians, largest_contact_step, patch_impedance
 from humanwalk.control.ground import PlaneGround
+from humanwalk.control.stability import round_down
 from humanwalk.diagrams.human_plant import HumanPlant
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.asperity_contact import AsperityContact
 from humanwalk.systems.foot_force_observer import FootForceObserver
+
+Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,12 +54,18 @@ def add_foot_contact(builder: DiagramBuilder, scenario: Scenario, human: HumanPl
             "contact: asperity needs the discrete plant, whose step its forces are implicit in; allowed: with "
             "simulation.integrator: discrete; set it and a time_step, or contact: point"
         )
-    impedance = joint_impedance(scenario, human)
-    patches = [sole_patches(scenario.subject.skeleton, side) for side in SIDES]
+    feet = [sole_patches(scenario.subject.skeleton, side) for side in SIDES]
+    joint_law = _joint_law(scenario, human)
+    _require_stable_contact(plant, [patch for foot in feet for patch in foot], scenario.asperity, joint_law, human)
     contact = builder.AddNamedSystem(
         "foot_contact",
         AsperityContact(
-            plant, patches, PlaneGround(), scenario.asperity, impedance, scenario.simulation.control_period
+            plant,
+            feet,
+            PlaneGround(),
+            scenario.asperity,
+            joint_law(plant.time_step())[0],
+            scenario.simulation.control_period,
         ),
     )
     builder.Connect(plant.get_state_output_port(), contact.get_state_input_port())
@@ -75,12 +87,49 @@ def connect_spatial_forces(builder: DiagramBuilder, human: HumanPlant, ports: Se
         builder.Connect(port, human.plant.get_applied_spatial_force_input_port())
 
 
-def joint_impedance(scenario: Scenario, human: HumanPlant) -> npt.NDArray[np.float64]:
-    """What a step of the plant adds to the diagonal of its mass matrix for the actuators' law, shape (nv,)."""
-    h = human.plant.time_step()
-    damping, stiffness = {"implicit": (h, h * h), "semi_implicit": (h, 0.0), "explicit": (0.0, 0.0)}[
-        scenario.actuators.law
-    ]
-    impedance = np.zeros(human.plant.num_velocities())
-    impedance[human.joints.v] = damping * human.kd + stiffness * human.kp
-    return impedance
+def _joint_law(scenario: Scenario, human: HumanPlant) -> Callable[[float], tuple[Array, Array]]:
+    """What a step h of the actuators' law adds to the diagonal of the mass matrix, and what it takes explicitly."""
+    kp, kd = _in_velocities(human, human.kp), _in_velocities(human, human.kd)
+    none = np.zeros_like(kd)
+    return {
+        "implicit": lambda h: (h * kd + h * h * kp, none),
+        "semi_implicit": lambda h: (h * kd, none),
+        "explicit": lambda h: (none, h * kd),
+    }[scenario.actuators.law]
+
+
+def _in_velocities(human: HumanPlant, gains: Array) -> Array:
+    """Gains in actuator order, put where the plant has the joints' velocities; shape (nv,)."""
+    values = np.zeros(human.plant.num_velocities())
+    values[human.joints.v] = gains
+    return values
+
+
+def _require_stable_contact(
+    plant: MultibodyPlant,
+    patches: Sequence[SolePatch],
+    parameters: AsperityParameters,
+    joint_law: Callable[[float], tuple[Array, Array]],
+    human: HumanPlant,
+) -> None:
+    """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""
+    context = plant.CreateDefaultContext()
+    J = body_jacobians(plant, context, [plant.GetBodyByName(patch.body) for patch in patches])
+    _, R_SW = PlaneGround()(np.zeros(3))
+    # Standing, every body of the feet is turned as the world is.
+    r, area = np.array([patch.p_BoQ_B for patch in patches]), np.array([patch.area for patch in patches])
+    stable = largest_contact_step(
+        plant.CalcMassMatrix(context),
+        J,
+        patch_impedance(r, area, R_SW, parameters.normal_stiffness, parameters.spring_stiffness),
+        patch_impedance(r, area, R_SW, parameters.normal_damping, parameters.velocity_stiffness),
+        joint_law,
+        _in_velocities(human, human.kp),
+        upper=0.01,
+    )
+    if plant.time_step() > stable:
+        raise ParameterError(
+            f"asperity: unstable at time_step {plant.time_step():g} s; allowed: steps up to {round_down(stable):g} s with "
+            "these joints and this stiffness and damping; lower simulation.time_step, or normal_stiffness and "
+            "normal_damping"
+        )

@@ -7,7 +7,6 @@ import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -21,7 +20,7 @@ from pydrake.systems.framework import (
 
 from humanwalk.body.contact import SolePatch
 from humanwalk.control.asperity import AsperityParameters
-from humanwalk.control.contact_step import ContactMemory, Contacts, body_mobility, contact_step
+from humanwalk.control.contact_step import ContactMemory, Contacts, body_jacobians, body_mobility, contact_step
 from humanwalk.control.ground import Ground
 from humanwalk.control.ground_force import foot_force
 
@@ -70,7 +69,7 @@ class AsperityContact(LeafSystem):
         """
         super().__init__()
         self._plant, self._plant_context = plant, plant.CreateDefaultContext()
-        self._ground, self._parameters, self._impedance = ground, parameters, joint_impedance
+        self._ground, self._parameters, self._joint_impedance = ground, parameters, joint_impedance
         patches = [patch for foot in feet for patch in foot]
         self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
         # The origin comes first, so that one call gives it and all points.
@@ -162,17 +161,11 @@ class AsperityContact(LeafSystem):
     def _renew_mobility(self, context: Context, state: State) -> EventStatus:
         plant, inner = self._plant, self._plant_context
         plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        J = np.vstack([self._jacobian(body) for body in self._bodies])
-        G = body_mobility(plant.CalcMassMatrix(inner), J, self._impedance)
+        G = body_mobility(
+            plant.CalcMassMatrix(inner), body_jacobians(plant, inner, self._bodies), self._joint_impedance
+        )
         state.get_mutable_discrete_state(self._mobility).set_value(G.ravel())
         return EventStatus.Succeeded()
-
-    def _jacobian(self, body: RigidBody) -> Array:
-        world = self._plant.world_frame()
-        J: Array = self._plant.CalcJacobianSpatialVelocity(
-            self._plant_context, JacobianWrtVariable.kV, body.body_frame(), np.zeros(3), world, world
-        )
-        return J
 
     def _calc_forces(self, context: Context, output: Value) -> None:
         forces = []
