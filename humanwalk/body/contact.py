@@ -35,7 +35,7 @@ HYDRO_MODULUS = 2.0e7
 HYDRO_RESOLUTION = 0.05
 """Mesh resolution hint of the soles [m] (Drake ignores it for boxes)."""
 
-SOLE_GRID = (4, 4)
+SOLE_GRID = (5, 5)
 """Rectangles along and across the lower face of each box that the asperity law acts on (our choice)."""
 
 SPHERE_RADIUS = 0.012

@@ -56,7 +56,7 @@ class AsperityParameters:
     breaking_factor: float = quantity(0.975, "", 0.0, 1.0)
     """Share of mu f_n at which an asperity breaks away (thesis' max asperity breaking factor)."""
 
-    normal_stiffness: float = quantity(5e7, "N/m3", 1e3, 1e9)
+    normal_stiffness: float = quantity(5e7, "N/m3", 1e3, 3e8)
     """Per area. The thesis' 0 carries nobody; E8 derives 1.5e7 to 5e7: quiet standing sinks in 1.0 to 0.3 mm."""
 
     normal_damping: float = quantity(4e5, "N s/m3", 0.0, 1e8)

@@ -46,6 +46,10 @@ WHOLE_PASSES = 3
 GRIP_TOLERANCE = 0.25
 """Relative change of a grip that is worth another pass."""
 
+LONGEST_STEP = 0.002
+"""No longer step is called stable [s]: from 3 ms on a block that lands on a slope may be thrown off, which no
+linearisation at rest shows."""
+
 MOBILITY_MARGIN = 1.5
 """Factor on the mobility: one that is a tenth too small would make a step of 1 ms unstable, one that is twice too great
 only lets the forces lag a little."""
@@ -117,7 +121,10 @@ class Contacts:
 
     def friction_use(self, bodies: slice) -> float:
         """Friction on some of the bodies as a share of the most that the ground could give; 0 without contact."""
-        friction = np.vecmat(_components(self.friction[bodies]), np.broadcast_to(self.R_SW, (*self.normal.shape, 3, 3))[bodies][..., :2, :])
+        friction = np.vecmat(
+            _components(self.friction[bodies]),
+            np.broadcast_to(self.R_SW, (*self.normal.shape, 3, 3))[bodies][..., :2, :],
+        )
         return friction_use(friction.sum(axis=(0, 1)), float(self.bound[bodies].sum()))
 
     @property
@@ -284,7 +291,7 @@ def largest_contact_step(
     damping: Array,
     joint_law: Callable[[float], tuple[Array, Array]],
     joint_stiffness: Array,
-    upper: float = 0.1,
+    upper: float = LONGEST_STEP,
 ) -> float:
     """Largest step [s] at which a body that stands on sticking patches stays bounded, linearised at rest.
 
@@ -338,4 +345,3 @@ def _wrenches(X: Array, f_t: Complex, f_n: Array) -> Array:
     b, rows = X.shape[:2]
     wrenches: Array = (_components(f_t, f_n).reshape(b, 1, rows) @ X)[:, 0]
     return wrenches
-

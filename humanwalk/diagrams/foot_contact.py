@@ -46,7 +46,9 @@ def add_foot_contact(builder: DiagramBuilder, scenario: Scenario, human: HumanPl
     """
     plant = human.plant
     if scenario.contact != "asperity":
-        feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
+        feet = builder.AddNamedSystem(
+            "foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector())
+        )
         builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
         return FootContact(feet.get_foot_forces_output_port(), feet.get_friction_use_output_port(), ())
     if scenario.simulation.integrator != "discrete":
@@ -125,7 +127,6 @@ def _require_stable_contact(
         patch_impedance(r, area, R_SW, parameters.normal_damping, parameters.velocity_stiffness),
         joint_law,
         _in_velocities(human, human.kp),
-        upper=0.01,
     )
     if plant.time_step() > stable:
         raise ParameterError(
