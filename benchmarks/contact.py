@@ -1,7 +1,7 @@
 """Three grounds under the same walks: what the contact models make of them, and what they cost.
 
     python benchmarks/contact.py evaluation    # time of one evaluation of the asperity law and of its step, both feet
-    python benchmarks/contact.py compare       # thesis and balanced walk on all three; JSON and the plots of docs/contact.md
+    python benchmarks/contact.py compare       # thesis and balanced walk on all three; JSON and plots of docs/contact.md
 
 `compare` keeps every run under runs/contact and takes those that are there already; `--fresh` simulates all again.
 """
@@ -67,7 +67,7 @@ def microseconds(call: Callable[[], Any], repeats: int = 3000) -> dict[str, floa
 
 
 def evaluation() -> dict[str, Any]:
-    """Both feet, standing and sliding a little: the law alone, and the whole implicit step."""
+    """Both feet on the ground: the law alone, and the whole implicit step at rest, where one pass does."""
     scenario = load_scenario("thesis")
     plant, parameters, step = kinematics_plant(scenario.subject), AsperityParameters(), 1e-3
     context = plant.CreateDefaultContext()
@@ -80,8 +80,7 @@ def evaluation() -> dict[str, Any]:
     G = body_mobility(
         plant.CalcMassMatrix(context), body_jacobians(plant, context, bodies), np.zeros(plant.num_velocities())
     )
-    V = np.tile([0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (len(bodies), 1))
-    memory = ContactMemory.fresh(p_WQ, V)
+    V = np.zeros((len(bodies), 6))
     depth, rate = np.full(area.shape, 3e-4), np.zeros(area.shape)
     stretch = velocity = np.full(area.shape, 1e-4 + 0j)
 
@@ -89,7 +88,9 @@ def evaluation() -> dict[str, Any]:
         f_n = normal_force(parameters, area, depth, rate)
         friction_force(parameters, area, stretch, velocity, friction_coefficient(parameters, f_n / area, 0.0) * f_n)
 
-    ground = PlaneGround()
+    ground, memory = PlaneGround(), ContactMemory.fresh(p_WQ, V)
+    for _ in range(20):
+        memory = contact_step(parameters, ground, area, p_WB, p_WQ, V, memory, G, step, 0.0).memory
     return {
         "points": int(area.size),
         "law": microseconds(law),
@@ -195,7 +196,7 @@ def compare(fresh: bool) -> dict[str, Any]:
 def draw(walk: str, shown: dict[str, Any], end: float) -> None:
     forces = new_figure(f"{walk}: force of the ground on the right foot", height=5.2, rows=3, sharex=True)
     soles = new_figure(f"{walk}: the right foot on the ground", height=5.2, rows=3, sharex=True)
-    for name, (scenario, signals, motion) in shown.items():
+    for name, (_, signals, motion) in shown.items():
         time_s = signals[TIME].to_numpy()
         rows = (time_s >= end - LAST) & (time_s <= end)
         force = {axis: signals[f"right_foot.force_{axis}_N"].to_numpy()[rows] for axis in "xz"}
@@ -214,7 +215,7 @@ def draw(walk: str, shown: dict[str, Any], end: float) -> None:
         curve(soles.axes[0], time_s[rows], np.where(on, 100 * ahead, np.nan), **style)
         curve(soles.axes[1], time_s[rows], np.where(on, 1e3 * speed, np.nan), **style)
         curve(soles.axes[2], time_s[rows], np.where(on, 1e3 * deepest, np.nan), **style)
-    level(forces.axes[0], scenario.subject.mass * GRAVITY, "body weight")
+    level(forces.axes[0], shown[MODELS[0]][0].subject.mass * GRAVITY, "body weight")
     soles.axes[1].set_yscale("symlog", linthresh=1.0)
     forces.axes[2].set_ylim(0.0, 1.1)
     for figure, names in (

@@ -1,7 +1,7 @@
 """One step of the asperity law on the bodies of a foot, implicit in their velocities.
 
-The law is stiff: under a toe, 0.2 kg, its damping alone would diverge as an explicit force at any step above 0.05 ms. So
-it is evaluated at the end of the step, where the bodies will be then. With the mobility G = J (M + D)^-1 J' of the
+The law is stiff: under toes of 0.25 kg it would diverge as an explicit force at steps above 0.04 ms. So it is
+evaluated at the end of the step, where the bodies will be then. With the mobility G = J (M + D)^-1 J' of the
 bodies that touch (D: what the joints add implicitly), their velocities V, and the law's linearisation F = F0 - B V,
 
     V(t + h) = V(t) + h a + h G F,    a = (V(t) - V(t - h)) / h - G F(t - h),
@@ -310,7 +310,7 @@ def largest_contact_step(
     def update(h: float) -> Array:
         added, taken = joint_law(h)
         solved, G = np.linalg.inv(M + np.diag(added)), body_mobility(M, J, added)
-        # The state is [q, v, V(t - h), F(t - h)]; F = -K J q - B V(t + h), V(t + h) = (1 + h G B)^-1 (free - h G K J q).
+        # The state is [q, v, V(t - h), F(t - h)]; F = -K J q - B V(t + h) and (1 + h G B) V(t + h) = free - h G K J q.
         of_free = -np.linalg.solve((np.eye(m) + h * G @ (damping + h * stiffness)).T, damping + h * stiffness).T
         F = np.hstack((-(stiffness + h * of_free @ G @ stiffness) @ J, 2.0 * of_free @ J, -of_free, -h * of_free @ G))
         v = np.hstack((-h * solved * joint_stiffness, solved @ (M - np.diag(taken)), np.zeros((n, 2 * m))))

@@ -25,8 +25,8 @@ class Ground(Protocol):
             p_WQ: points [m], shape (..., 3).
 
         Returns:
-            Height [m], negative below the surface, shape (...); rotation R_SW whose rows are the axes along the surface,
-            x and y, and its normal, shape (3, 3), or (..., 3, 3) where they differ from point to point.
+            Height [m], negative below the surface, shape (...); rotation R_SW whose rows are the surface's axes x and y
+            and its normal, shape (3, 3), or (..., 3, 3) where they differ from point to point.
         """
 
 

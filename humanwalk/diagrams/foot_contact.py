@@ -130,7 +130,6 @@ def _require_stable_contact(
     )
     if plant.time_step() > stable:
         raise ParameterError(
-            f"asperity: unstable at time_step {plant.time_step():g} s; allowed: steps up to {round_down(stable):g} s with "
-            "these joints and this stiffness and damping; lower simulation.time_step, or normal_stiffness and "
-            "normal_damping"
+            f"asperity: unstable at time_step {plant.time_step():g} s; allowed: steps up to {round_down(stable):g} s "
+            "with these joints, stiffness and damping; lower simulation.time_step"
         )

@@ -35,7 +35,7 @@ def step(depth, V, mobility, h=1e-3, memory=None):
 def test_point_jacobians_give_the_velocity_of_a_rigid_body(seed):
     random = np.random.default_rng(seed)
     r, V = random.normal(size=(2, 3, 3)), random.normal(size=(2, 6))
-    R_SW = surface_axes(random.uniform(-1, 1, (2, 3, 3)) + [0.0, 0.0, 2.0])
+    R_SW = surface_axes(random.uniform(-1, 1, (2, 3, 3)) + np.array([0.0, 0.0, 2.0]))
     expected = np.matvec(R_SW, V[:, None, 3:] + np.cross(V[:, None, :3], r))
     found = (point_jacobians(r, R_SW) @ V[..., None]).reshape(2, 3, 3)
     np.testing.assert_allclose(found, expected, atol=1e-12)
