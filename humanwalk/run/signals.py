@@ -49,7 +49,6 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
         "soles": [column for side in sides for column in _xyz(f"{side}_sole.", "m")],
         "com": [*_xyz("com.", "m"), *_xyz("com.velocity_", "m_s")],
         "foot_forces": [f"{side}_foot.{column}" for side in sides for column in foot],
-        "friction_use": [f"{side}_foot.friction_use" for side in sides],
         "phase": [f"{side}_foot.phase" for side in sides],
         "contact_schedule": [f"{side}_foot.scheduled" for side in sides],
         "ik_status": [
@@ -74,6 +73,7 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
         ],
         "qp_status": ["qp.solved", "qp.failures", "qp.failures_in_a_row"],
         "push": _xyz("push.force_", "N"),
+        "friction_use": [f"{side}_foot.friction_use" for side in sides],
     }
 
 
