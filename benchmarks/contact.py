@@ -1,7 +1,7 @@
 """Three grounds under the same walks: what the contact models make of them, and what they cost.
 
     python benchmarks/contact.py evaluation    # time of one evaluation of the asperity law and of its step, both feet
-    python benchmarks/contact.py compare       # thesis and balanced walk on all three; JSON and plots of docs/contact.md
+    python benchmarks/contact.py compare       # thesis and balanced walk on all; JSON and plots of docs/contact.md
 
 `compare` keeps every run under runs/contact and takes those that are there already; `--fresh` simulates all again.
 """

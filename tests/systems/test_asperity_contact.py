@@ -205,7 +205,7 @@ def test_anchors_follow_a_sliding_block():
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
 def test_a_bouncing_ball_loses_energy_as_its_damping_says(ratio):
-    """Coefficient of restitution of a linear spring-damper that never pulls (Schwager and Poeschel 2007, Eq 25)."""
+    """Coefficient of restitution of a linear spring-damper that never pulls (Schwager and Poeschel 2007)."""
     omega = 300.0
     point = SolePatch("block", np.array([[0.0, 0.0, -0.5 * SIZE[2]]]), np.array([1e-3]))
     law = dataclasses.replace(
