@@ -24,6 +24,7 @@ import yaml
 from pydrake.common.yaml import yaml_dump, yaml_load
 
 from humanwalk.body.plant import Subject
+from humanwalk.control.asperity import AsperityParameters
 from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBodyBalanceParameters
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.command import CommandParameters
@@ -38,7 +39,7 @@ from humanwalk.gait.recorded_motion import FollowParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 
-Contact = Literal["point", "hydroelastic"]
+Contact = Literal["point", "hydroelastic", "asperity"]
 Controller = Literal["thesis", "balanced"]
 
 LARGEST_FILE = 100_000
@@ -167,7 +168,10 @@ class Scenario:
     """Of everything random."""
 
     contact: Contact = "point"
-    """Contact model under the feet."""
+    """Contact model under the feet: Drake's point or hydroelastic contact, or the thesis' law."""
+
+    asperity: AsperityParameters = AsperityParameters()
+    """The thesis' law; counts with `contact: asperity`."""
 
     subject: Subject = Subject()
     """Whose body."""

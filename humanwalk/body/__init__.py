@@ -1,7 +1,7 @@
 """The human as data: segment table, skeleton, scaling to a subject, and the model file."""
 
 from humanwalk.body.anatomy import LEG_JOINTS, REFERENCE_MASS, REFERENCE_STATURE, human
-from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_spheres
+from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_spheres, sole_patches
 from humanwalk.body.sdf import MODEL_NAME, to_sdf, write_sdf
 from humanwalk.body.shapes import Box, Cylinder
 from humanwalk.body.skeleton import SIDES, Joint, Segment, Side, Skeleton, Weld
@@ -24,6 +24,7 @@ __all__ = [
     "contact_boxes",
     "contact_spheres",
     "human",
+    "sole_patches",
     "to_sdf",
     "write_sdf",
 ]

@@ -1,16 +1,20 @@
-"""How the feet meet the ground: two interchangeable sets of collision shapes under each foot.
+"""How the feet meet the ground: two interchangeable sets of collision shapes under each foot, and a sole of points.
 
 The point set is six small spheres a foot, the hydroelastic set three compliant boxes. Both are in
 the model file, told apart by `POINT_SET` and `HYDRO_SET` in their names; a diagram keeps one set
-and filters the other out. Every shape's lowest points lie on the sole plane.
+and filters the other out, or both where the thesis' own contact law acts on the lower faces of the
+boxes. Every shape's lowest points lie on the sole plane.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from humanwalk.body.anatomy import REFERENCE_STATURE
-from humanwalk.body.skeleton import SIDES, Skeleton, Vector3
+from humanwalk.body.skeleton import SIDES, Side, Skeleton, Vector3
 
 POINT_SET = "_point_"
 """Part of the name of every collision shape of the point-contact set."""
@@ -30,6 +34,9 @@ HYDRO_MODULUS = 2.0e7
 """Hydroelastic modulus of the soles [Pa] (our choice); below 1e7 Pa the body tips over."""
 HYDRO_RESOLUTION = 0.05
 """Mesh resolution hint of the soles [m] (Drake ignores it for boxes)."""
+
+SOLE_GRID = (5, 5)
+"""Rectangles along and across the lower face of each box that the asperity law acts on (our choice)."""
 
 SPHERE_RADIUS = 0.012
 """Radius of the contact spheres of the reference human [m]."""
@@ -85,6 +92,21 @@ class ContactBox:
     size: Vector3
 
 
+@dataclass(frozen=True)
+class SolePatch:
+    """A flat piece of one body's sole, cut into rectangles.
+
+    Attributes:
+        body: Body name.
+        p_BoQ_B: Middle of each rectangle [m], shape (k, 3).
+        area: Of each rectangle [m2], shape (k,).
+    """
+
+    body: str
+    p_BoQ_B: npt.NDArray[np.float64]
+    area: npt.NDArray[np.float64]
+
+
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
     """The point set: medial and lateral spheres under heel, ball and toes of both feet."""
     scale = skeleton.stature / REFERENCE_STATURE
@@ -125,6 +147,33 @@ def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
                 )
             )
     return tuple(boxes)
+
+
+def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
+    """The polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes, in rectangles."""
+    return tuple(
+        rectangle_patch(box.body, box.center, box.size, SOLE_GRID)
+        for box in contact_boxes(skeleton)
+        if box.name.startswith(side)
+    )
+
+
+def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, int]) -> SolePatch:
+    """The lower face of a box, cut into rectangles.
+
+    Args:
+        body: that the box belongs to.
+        center: of the box in the body frame [m].
+        size: its edges along the body's x, y, z [m].
+        grid: how many rectangles along x and y.
+    """
+    x, y = (
+        middle + edge * ((np.arange(n) + 0.5) / n - 0.5)
+        for middle, edge, n in zip(center[:2], size[:2], grid, strict=True)
+    )
+    bottom = center[2] - 0.5 * size[2]
+    p_BoQ_B = np.array([(a, b, bottom) for a in x for b in y])
+    return SolePatch(body, p_BoQ_B, np.full(len(p_BoQ_B), size[0] * size[1] / len(p_BoQ_B)))
 
 
 def _in_body(skeleton: Skeleton, side: str, body: str, p_SoleP: Vector3) -> Vector3:

@@ -27,6 +27,11 @@ class FootForce:
     free_moment: float
     loaded: bool
 
+    @property
+    def vector(self) -> Array:
+        """All of it in the order above, loaded as 1 or 0; shape (8,)."""
+        return np.array([*self.f_W, *self.p_WCop, self.free_moment, float(self.loaded)])
+
 
 def foot_force(f_W: Array, tau_Wo: Array, ground_height: float = 0.0) -> FootForce:
     """Centre of pressure and free moment of a foot's whole contact wrench.
@@ -45,3 +50,13 @@ def foot_force(f_W: Array, tau_Wo: Array, ground_height: float = 0.0) -> FootFor
     y = (tau_Wo[0] + ground_height * f_W[1]) / f_W[2]
     free_moment = tau_Wo[2] - (x * f_W[1] - y * f_W[0])
     return FootForce(f_W, np.array([x, y, ground_height]), float(free_moment), True)
+
+
+def friction_use(f_t: Array, bound: float) -> float:
+    """How much of the friction that the ground could give is used: 1 where the foot slides; 0 while unloaded.
+
+    Args:
+        f_t: force along the ground [N], shape (2,) or (3,).
+        bound: the most that it can be, mu times the normal force [N].
+    """
+    return float(np.linalg.norm(f_t)) / bound if bound > UNLOADED_N else 0.0

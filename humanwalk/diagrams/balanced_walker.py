@@ -6,13 +6,13 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from humanwalk.body import SIDES
 from humanwalk.body.plant import kinematics_plant
+from humanwalk.diagrams.foot_contact import add_foot_contact, connect_spatial_forces
 from humanwalk.diagrams.human_plant import add_human_plant
 from humanwalk.diagrams.start import start_positions
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
-from humanwalk.systems.foot_force_observer import FootForceObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
@@ -26,11 +26,11 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
-    foot_force_observer.
+    foot_force_observer, or foot_contact with `contact: asperity`.
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
-        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16);
+        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
     and its own:
         command (3): see CommandSource.
         balance (9): see GaitPlanner.
@@ -70,12 +70,11 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
     pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
-    feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
+    feet = add_foot_contact(builder, scenario, human)
 
     builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
-    builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
     builder.Connect(plant.get_state_output_port(), planner.get_state_input_port())
-    builder.Connect(feet.get_foot_forces_output_port(), planner.get_foot_forces_input_port())
+    builder.Connect(feet.foot_forces, planner.get_foot_forces_input_port())
     builder.Connect(command.get_command_output_port(), planner.get_command_input_port())
     builder.Connect(plant.get_state_output_port(), controller.get_state_input_port())
     builder.Connect(planner.get_plan_output_port(), controller.get_plan_input_port())
@@ -87,7 +86,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
     if law == "implicit":
         builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
-    builder.Connect(pushes.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port())
+    connect_spatial_forces(builder, human, (*feet.spatial_forces, pushes.get_spatial_forces_output_port()))
 
     for port, name in (
         (plant.get_state_output_port(), "state"),
@@ -100,7 +99,8 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         (planner.get_contact_schedule_output_port(), "contact_schedule"),
         (body.get_soles_output_port(), "soles"),
         (body.get_com_output_port(), "com"),
-        (feet.get_foot_forces_output_port(), "foot_forces"),
+        (feet.foot_forces, "foot_forces"),
+        (feet.friction_use, "friction_use"),
         (command.get_command_output_port(), "command"),
         (planner.get_balance_output_port(), "balance"),
         (controller.get_status_output_port(), "qp_status"),

@@ -34,8 +34,10 @@ Array = npt.NDArray[np.float64]
 CONTACT_MODELS = {
     "point": ContactModel.kPoint,
     "hydroelastic": ContactModel.kHydroelasticWithFallback,
+    "asperity": ContactModel.kPoint,
 }
-UNUSED_CONTACT_SET = {"point": HYDRO_SET, "hydroelastic": POINT_SET}
+UNUSED_CONTACT_SETS = {"point": (HYDRO_SET,), "hydroelastic": (POINT_SET,), "asperity": (HYDRO_SET, POINT_SET)}
+"""What Drake must not collide; all of it where `AsperityContact` carries the body."""
 APPROXIMATIONS = {
     "sap": DiscreteContactApproximation.kSap,
     "lagged": DiscreteContactApproximation.kLagged,
@@ -57,7 +59,7 @@ class HumanPlant:
 
 
 def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
-    """Add the subject on level ground to a diagram, with gains installed and one contact set active."""
+    """Add the subject on level ground to a diagram, with gains installed and no contact set but the scenario's."""
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, scenario.simulation.time_step)
     instance = add_human(plant, scenario.subject)
     add_level_ground(plant, scenario.contact)
@@ -76,7 +78,7 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
     if legs_touch:
         add_leg_capsules(plant, scenario.subject.skeleton)
     plant.Finalize()
-    keep_one_contact_set(plant, scene_graph, scenario.contact)
+    exclude_unused_contact_sets(plant, scene_graph, scenario.contact)
     if legs_touch:
         let_legs_touch(plant, scene_graph)
     return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd, effort_limits)
@@ -98,14 +100,14 @@ def balanced_gains(joint_names: Sequence[str], walk: BalancedWalkParameters) -> 
     return np.where(held, walk.foot_stiffness, 0.0), np.where(held, walk.foot_damping, walk.joint_damping)
 
 
-def keep_one_contact_set(plant: MultibodyPlant, scene_graph: SceneGraph, contact: Contact) -> None:
+def exclude_unused_contact_sets(plant: MultibodyPlant, scene_graph: SceneGraph, contact: Contact) -> None:
     """Filter out of all collisions the foot geometry that the contact model does not use."""
     inspector = scene_graph.model_inspector()
     unused, everything = GeometrySet(), GeometrySet()
     for index in plant.GetBodyIndices(plant.GetModelInstanceByName("human")):
         for geometry in plant.GetCollisionGeometriesForBody(plant.get_body(index)):
             everything.Add(geometry)
-            if UNUSED_CONTACT_SET[contact] in inspector.GetName(geometry):
+            if any(unused_set in inspector.GetName(geometry) for unused_set in UNUSED_CONTACT_SETS[contact]):
                 unused.Add(geometry)
     for geometry in plant.GetCollisionGeometriesForBody(plant.world_body()):
         everything.Add(geometry)

@@ -11,6 +11,7 @@ from humanwalk.control.balance_support import BalanceSupportParameters, largest_
 from humanwalk.control.joint_map import base_first_mass_matrix
 from humanwalk.control.stability import round_down
 from humanwalk.diagrams.followed import followed_motion
+from humanwalk.diagrams.foot_contact import FootContact, add_foot_contact, connect_spatial_forces
 from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
 from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
 from humanwalk.diagrams.start import require_reachable, start_positions
@@ -19,7 +20,6 @@ from humanwalk.scenario import Scenario
 from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.foot_force_balance import FootForceBalance
-from humanwalk.systems.foot_force_observer import FootForceObserver
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
@@ -31,7 +31,8 @@ def make_walker(scenario: Scenario) -> Diagram:
 
     Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, interpolator, actuators, body_observer,
     foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance. A
-    scenario that follows a recording has recording instead of gait, arms, inverse_kinematics and interpolator.
+    scenario that follows a recording has recording instead of gait, arms, inverse_kinematics and interpolator; one
+    with `contact: asperity` has foot_contact instead of foot_force_observer.
 
     Exported outputs, joints in actuator order:
         state (97): plant state [q; v].
@@ -44,7 +45,7 @@ def make_walker(scenario: Scenario) -> Diagram:
         pelvis_reference (13): where the pelvis should be in W: quaternion, position, angular velocity, velocity.
         phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
-        foot_forces (16): see FootForceObserver.
+        foot_forces (16), friction_use (2): see FootForceObserver.
         support_wrench (6): torque [N m], force [N] of the assumed balance on the pelvis; with the support.
         foot_shift (12): see FootForceBalance; with balance level 1.
         alpha (4): see UpperBodyBalance; with balance level 2.
@@ -62,9 +63,9 @@ def make_walker(scenario: Scenario) -> Diagram:
         "actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law, human.effort_limits)
     )
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
-    feet = builder.AddNamedSystem("foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector()))
+    feet = add_foot_contact(builder, scenario, human)
+    connect_spatial_forces(builder, human, feet.spatial_forces)
     builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
-    builder.Connect(plant.get_contact_results_output_port(), feet.get_contact_results_input_port())
 
     if scenario.follow.file:
         reference = _add_recording(builder, scenario, human)
@@ -104,7 +105,8 @@ def make_walker(scenario: Scenario) -> Diagram:
         *((port, name) for name, port in reference.exports.items()),
         (body.get_soles_output_port(), "soles"),
         (body.get_com_output_port(), "com"),
-        (feet.get_foot_forces_output_port(), "foot_forces"),
+        (feet.foot_forces, "foot_forces"),
+        (feet.friction_use, "friction_use"),
     ):
         builder.ExportOutput(port, name)
     diagram = builder.Build()
@@ -130,7 +132,7 @@ def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlan
 
 
 def _add_gait(
-    builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, body: BodyObserver, feet: FootForceObserver
+    builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, body: BodyObserver, feet: FootContact
 ) -> _Reference:
     """Add gait, arms, inverse kinematics and the balance levels between them; the plant starts standing."""
     require_reachable(scenario)
@@ -186,7 +188,7 @@ def _add_foot_force_balance(
     builder: DiagramBuilder,
     scenario: Scenario,
     gait: GaitSplineSource,
-    feet: FootForceObserver,
+    feet: FootContact,
 ) -> FootForceBalance:
     """Add balance level 1 between the gait and the inverse kinematics."""
     level_1: FootForceBalance = builder.AddNamedSystem(
@@ -201,5 +203,5 @@ def _add_foot_force_balance(
         builder.Connect(gait.get_sole_pose_output_port(side), level_1.get_sole_pose_input_port(side))
         builder.Connect(gait.get_sole_velocity_output_port(side), level_1.get_sole_velocity_input_port(side))
     builder.Connect(gait.get_contact_schedule_output_port(), level_1.get_contact_schedule_input_port())
-    builder.Connect(feet.get_foot_forces_output_port(), level_1.get_foot_forces_input_port())
+    builder.Connect(feet.foot_forces, level_1.get_foot_forces_input_port())
     return level_1

@@ -82,6 +82,7 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
         ],
         "qp_status": ["qp.solved", "qp.failures", "qp.failures_in_a_row"],
         "push": _xyz("push.force_", "N"),
+        "friction_use": [f"{side}_foot.friction_use" for side in sides],
     }
 
 

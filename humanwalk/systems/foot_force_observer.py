@@ -8,8 +8,9 @@ from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
 
 from humanwalk.body import SIDES
+from humanwalk.body.contact import FRICTION
 from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.ground_force import foot_force
+from humanwalk.control.ground_force import foot_force, friction_use
 
 Array = npt.NDArray[np.float64]
 
@@ -23,6 +24,8 @@ class FootForceObserver(LeafSystem):
     Outputs:
         foot_forces: (16) right foot, then left foot, each: force on the foot in W [N] x y z, centre of pressure in W
             [m] x y z, free moment [N m], loaded (1 or 0). The last five are 0 while the foot is unloaded.
+        friction_use: (2) right, left: force along the ground over the friction coefficient times the force across it;
+            0 while the foot is unloaded.
     """
 
     def __init__(self, plant: MultibodyPlant, inspector: SceneGraphInspector) -> None:
@@ -44,6 +47,12 @@ class FootForceObserver(LeafSystem):
             "foot_forces",
             16,
             self._calc,
+            prerequisites_of_calc={self.input_port_ticket(self._contacts.get_index())},
+        )
+        self._friction_use_output = self.DeclareVectorOutputPort(
+            "friction_use",
+            2,
+            self._calc_friction_use,
             prerequisites_of_calc={self.input_port_ticket(self._contacts.get_index())},
         )
 
@@ -73,10 +82,11 @@ class FootForceObserver(LeafSystem):
             add(self._body_of_geometry[surface.id_M()], f_M, tau_M)
             add(self._body_of_geometry[surface.id_N()], -f_M, -tau_M)
 
-        feet = [foot_force(f_W[i], tau_Wo[i]) for i in range(2)]
-        output.SetFromVector(
-            [value for foot in feet for value in (*foot.f_W, *foot.p_WCop, foot.free_moment, float(foot.loaded))]
-        )
+        output.SetFromVector(np.concatenate([foot_force(f_W[i], tau_Wo[i]).vector for i in range(2)]))
+
+    def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
+        feet = self._output.Eval(context).reshape(2, 8)
+        output.SetFromVector([friction_use(foot[:2], FRICTION * foot[2]) for foot in feet])
 
     def get_contact_results_input_port(self) -> InputPort:
         """Input contact_results."""
@@ -85,6 +95,10 @@ class FootForceObserver(LeafSystem):
     def get_foot_forces_output_port(self) -> OutputPort:
         """Output foot_forces."""
         return self._output
+
+    def get_friction_use_output_port(self) -> OutputPort:
+        """Output friction_use."""
+        return self._friction_use_output
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.control.ground_force import UNLOADED_N, foot_force
+from humanwalk.control.ground_force import UNLOADED_N, foot_force, friction_use
 
 places = st.floats(-3.0, 3.0)
 heights = st.floats(-1.0, 1.0)
@@ -45,3 +45,13 @@ def test_an_unloaded_foot_has_no_centre_of_pressure(fz):
     assert foot.free_moment == 0.0
     np.testing.assert_array_equal(foot.p_WCop, 0.0)
     np.testing.assert_array_equal(foot.f_W, [3.0, 0.0, fz])
+
+
+def test_friction_use_is_the_share_of_what_friction_could_give():
+    assert friction_use(np.array([3.0, 4.0]), 10.0) == 0.5
+    assert friction_use(np.array([1e-3, 0.0]), 1e-3) == 0.0
+
+
+def test_the_vector_holds_the_force_the_centre_of_pressure_the_free_moment_and_whether_it_is_loaded():
+    foot = foot_force(np.array([1.0, 2.0, 100.0]), np.array([5.0, -7.0, 3.0]))
+    np.testing.assert_allclose(foot.vector, [1.0, 2.0, 100.0, 0.07, 0.05, 0.0, foot.free_moment, 1.0])

@@ -10,7 +10,7 @@ from humanwalk.scenario import load_scenario, parse_scenario
 
 PORTS = [
     *("state", "query_object", "contact_results", "torque", "saturated", "desired_state", "phase"),
-    *("contact_schedule", "soles", "com", "foot_forces", "command", "balance", "qp_status", "push"),
+    *("contact_schedule", "soles", "com", "foot_forces", "friction_use", "command", "balance", "qp_status", "push"),
 ]
 
 
@@ -31,7 +31,7 @@ def test_nothing_but_the_ground_acts_on_it():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+@pytest.mark.parametrize("contact", ["point", "hydroelastic", "asperity"])
 def test_it_walks_its_first_steps(contact):
     diagram = make_diagram(
         load_scenario("walk", {"balanced.command.points": "[{time: 0.2, forward: 0.6}]", "contact": contact})

@@ -22,6 +22,7 @@ IMPLICIT = {"actuators.law": "implicit"}
 LEVELS = {"balance.foot_force.enabled": "true", "balance.upper_body.enabled": "true"}
 UNSUPPORTED = {"balance.support.enabled": "false"}
 HYDROELASTIC = {"contact": "hydroelastic"}
+ASPERITY = {"contact": "asperity"}
 CENIC = {"simulation.integrator": "cenic", "simulation.time_step": "0"}
 EXPLICIT = {
     "actuators.law": "explicit",
@@ -44,6 +45,7 @@ PORTS = {
     "soles": 6,
     "com": 6,
     "foot_forces": 16,
+    "friction_use": 2,
 }
 
 
@@ -193,8 +195,14 @@ def test_the_offset_that_is_named_as_a_mend_works():
 
 @pytest.mark.parametrize(
     "changes",
-    [(HYDROELASTIC,), (CENIC,), (CENIC, HYDROELASTIC), (EXPLICIT,), (SEMI_IMPLICIT,), (IMPLICIT,), (LEVELS,)],
-    ids=["hydroelastic", "cenic", "cenic-hydroelastic", "explicit", "semi_implicit", "implicit", "levels"],
+    [
+        *[(HYDROELASTIC,), (CENIC,), (CENIC, HYDROELASTIC), (EXPLICIT,), (SEMI_IMPLICIT,), (IMPLICIT,), (LEVELS,)],
+        *[(ASPERITY,), (ASPERITY, IMPLICIT), (ASPERITY, LEVELS)],
+    ],
+    ids=[
+        *["hydroelastic", "cenic", "cenic-hydroelastic", "explicit", "semi_implicit", "implicit", "levels"],
+        *["asperity", "asperity-implicit", "asperity-levels"],
+    ],
 )
 def test_variant_walks_the_way_of_the_reference(changes):
     walked = Walked(thesis(*changes), 0.1)
@@ -233,6 +241,36 @@ def test_only_the_chosen_contact_set_touches_the_ground(contact, used, unused):
     assert all(any(f"{side}Leg" in name for name in shapes) for side in SIDES)
     assert bool(pairs) == (contact == "point")
     assert bool(surfaces) == (contact == "hydroelastic")
+
+
+def test_drake_collides_no_foot_that_the_asperity_law_carries():
+    walked = Walked(thesis(STAND, ASPERITY), 0.05)
+    results = walked.value("contact_results")
+    assert (results.num_point_pair_contacts(), results.num_hydroelastic_contacts()) == (0, 0)
+    assert walked.value("foot_forces").reshape(2, 8)[:, 7].tolist() == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (CENIC, ("contact: asperity", "discrete", "contact: point")),
+        ({"simulation.time_step": "0.003"}, ("asperity: unstable", "time_step")),
+    ],
+    ids=["cenic", "step"],
+)
+def test_asperity_that_cannot_be_simulated_is_refused(change, said):
+    with pytest.raises(ParameterError) as raised:
+        make_walker(thesis(ASPERITY, change))
+    message = str(raised.value)
+    assert all(part in message for part in said)
+    assert len(message.splitlines()) == 1
+
+
+def test_the_step_that_is_named_as_a_mend_for_asperity_works():
+    with pytest.raises(ParameterError) as raised:
+        make_walker(thesis(ASPERITY, {"simulation.time_step": "0.003"}))
+    step = str(raised.value).partition("steps up to ")[2].partition(" s")[0]
+    make_walker(thesis(ASPERITY, {"simulation.time_step": step}))
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
@@ -274,7 +312,11 @@ def test_seed_without_noise_changes_nothing():
 # Physics.
 
 
-@pytest.fixture(scope="module", params=[(STAND,), (STAND, HYDROELASTIC)], ids=["point", "hydroelastic"])
+@pytest.fixture(
+    scope="module",
+    params=[(STAND,), (STAND, HYDROELASTIC), (STAND, ASPERITY)],
+    ids=["point", "hydroelastic", "asperity"],
+)
 def stood(request):
     """A second of standing."""
     return Walked(thesis(*request.param), 1.0)

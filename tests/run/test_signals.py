@@ -17,8 +17,8 @@ PERIOD = 0.01
 LEVELS = {"balance.foot_force.enabled": "true", "balance.upper_body.enabled": "true"}
 ENDINGS = ("_m", "_m_s", "_N", "_N_m", "_rad", "_rad_s")
 WITHOUT_UNIT = (
-    r"\.((reference_)?quaternion_[wxyz]|saturated|loaded|phase|scheduled|ik_residual|ik_iterations|ik_converged"
-    r"|solved|failures(_in_a_row)?)$"
+    r"\.((reference_)?quaternion_[wxyz]|saturated|loaded|friction_use|phase|scheduled|ik_residual|ik_iterations"
+    r"|ik_converged|solved|failures(_in_a_row)?)$"
 )
 
 

@@ -53,9 +53,12 @@ def test_ports(plant):
     assert observer.get_contact_results_input_port().get_name() == "contact_results"
     port = observer.get_foot_forces_output_port()
     assert (port.get_name(), port.size()) == ("foot_forces", 16)
+    use = observer.get_friction_use_output_port()
+    assert (use.get_name(), use.size()) == ("friction_use", 2)
     context = observer.CreateDefaultContext()
     observer.get_contact_results_input_port().FixValue(context, Value(ContactResults()))
     np.testing.assert_array_equal(port.Eval(context), 0.0)
+    np.testing.assert_array_equal(use.Eval(context), 0.0)
 
 
 def test_the_feet_carry_the_weight(stood):

@@ -1,0 +1,251 @@
+"""Three grounds under the same walks: what the contact models make of them, and what they cost.
+
+    python benchmarks/contact.py evaluation    # time of one evaluation of the asperity law and of its step, both feet
+    python benchmarks/contact.py compare       # thesis and balanced walk on all; JSON and plots of docs/contact.md
+
+`compare` keeps every run under runs/contact and takes those that are there already; `--fresh` simulates all again.
+"""
+
+import argparse
+import json
+import logging
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+
+from humanwalk.body import SIDES, sole_patches
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.control.asperity import AsperityParameters, friction_coefficient, friction_force, normal_force
+from humanwalk.control.contact_step import (
+    ContactMemory,
+    body_jacobians,
+    body_mobility,
+    contact_step,
+)
+from humanwalk.control.ground import PlaneGround
+from humanwalk.control.joint_map import JointMap
+from humanwalk.run.measures import CONTACT_ON_N, GRAVITY, foot_contact, steady_from, touchdowns
+from humanwalk.run.plots.drawing import curve, label, legend, level, new_figure, save
+from humanwalk.run.signals import TIME, matrix, signal_columns
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import Scenario, load_scenario
+
+ROOT = Path(__file__).parent.parent
+RUNS = ROOT / "runs" / "contact"
+RESULTS = ROOT / "benchmarks" / "results" / "contact.json"
+IMAGES = ROOT / "docs" / "images" / "contact"
+
+MODELS = ("point", "hydroelastic", "asperity")
+STIFF = {"asperity.normal_stiffness": "2e8"}
+RUNS_OF = {
+    "thesis": {model: ("thesis", {}) for model in MODELS},
+    "walk": {
+        "point": ("walk", {}),
+        "hydroelastic": ("walk", {}),
+        "asperity": ("walk", STIFF),
+        "asperity, 5e7": ("walk", {}),
+    },
+}
+"""Scenario and overrides of every run, by walk and by what it is called on the page."""
+COLORS = dict(zip(MODELS, ("#4477aa", "#228833", "#cc3311"), strict=True))
+LAST = 1.3
+"""Stretch that is plotted [s]."""
+
+
+def microseconds(call: Callable[[], Any], repeats: int = 3000) -> dict[str, float]:
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        call()
+        times.append(1e6 * (time.perf_counter() - began))
+    return {"median_us": statistics.median(times), "tenth_percentile_us": float(np.percentile(times, 10))}
+
+
+def evaluation() -> dict[str, Any]:
+    """Both feet on the ground: the law alone, and the whole implicit step at rest, where one pass does."""
+    scenario = load_scenario("thesis")
+    plant, parameters, step = kinematics_plant(scenario.subject), AsperityParameters(), 1e-3
+    context = plant.CreateDefaultContext()
+    patches = [patch for side in SIDES for patch in sole_patches(scenario.subject.skeleton, side)]
+    bodies = [plant.GetBodyByName(patch.body) for patch in patches]
+    area = np.array([patch.area for patch in patches])
+    p_WB = np.array([body.EvalPoseInWorld(context).translation() for body in bodies])
+    p_WQ = p_WB[:, None] + [patch.p_BoQ_B for patch in patches]
+    p_WQ[..., 2] -= p_WQ[..., 2].min() + 3e-4
+    G = body_mobility(
+        plant.CalcMassMatrix(context), body_jacobians(plant, context, bodies), np.zeros(plant.num_velocities())
+    )
+    V = np.zeros((len(bodies), 6))
+    depth, rate = np.full(area.shape, 3e-4), np.zeros(area.shape)
+    stretch = velocity = np.full(area.shape, 1e-4 + 0j)
+
+    def law() -> None:
+        f_n = normal_force(parameters, area, depth, rate)
+        friction_force(parameters, area, stretch, velocity, friction_coefficient(parameters, f_n / area, 0.0) * f_n)
+
+    ground, memory = PlaneGround(), ContactMemory.fresh(p_WQ, V)
+    for _ in range(20):
+        memory = contact_step(parameters, ground, area, p_WB, p_WQ, V, memory, G, step, 0.0).memory
+    return {
+        "points": int(area.size),
+        "law": microseconds(law),
+        "step": microseconds(lambda: contact_step(parameters, ground, area, p_WB, p_WQ, V, memory, G, step, 0.0)),
+    }
+
+
+def signals_of(walk: str, name: str, fresh: bool) -> tuple[Scenario, Any, dict[str, Any]]:
+    """Record and how it came about, simulated unless it is there."""
+    scenario_name, overrides = RUNS_OF[walk][name]
+    scenario = load_scenario(scenario_name, overrides | {"contact": name.split(",")[0]})
+    folder = RUNS / f"{walk}_{name.replace(', ', '_')}"
+    if fresh or not (folder / "how.json").exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        cpu = time.process_time()
+        outcome = simulate(scenario)
+        cpu = time.process_time() - cpu
+        pq.write_table(outcome.signals, folder / "signals.parquet")
+        simulated = outcome.signals[TIME][-1].as_py()
+        how = {
+            "end": outcome.end,
+            "time_s": simulated,
+            "realtime_factor_cpu": simulated / cpu,
+            "realtime_factor": simulated / outcome.wall_time,
+        }
+        (folder / "how.json").write_text(json.dumps(how))
+    return scenario, pq.read_table(folder / "signals.parquet"), json.loads((folder / "how.json").read_text())
+
+
+def sole_motion(scenario: Scenario, signals: Any) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Of each foot, whatever the model: depth of its deepest point [m], mean speed of those below ground [m/s]."""
+    plant = kinematics_plant(scenario.subject)
+    context, world = plant.CreateDefaultContext(), plant.world_frame()
+    states = matrix(signals, signal_columns(JointMap.of(plant))["state"])
+    motion = {}
+    for side in SIDES:
+        patches = [(plant.GetBodyByName(p.body), p.p_BoQ_B.T) for p in sole_patches(scenario.subject.skeleton, side)]
+        deepest, speed = np.zeros(len(states)), np.zeros(len(states))
+        for row, state in enumerate(states):
+            plant.SetPositionsAndVelocities(context, state)
+            depth, speeds = [], []
+            for body, points in patches:
+                p_WQ = plant.CalcPointsPositions(context, body.body_frame(), points, world)
+                V = plant.EvalBodySpatialVelocityInWorld(context, body)
+                r = p_WQ - body.EvalPoseInWorld(context).translation()[:, None]
+                v = V.translational()[:, None] + np.cross(V.rotational(), r, axisb=0, axisc=0)
+                depth.append(-p_WQ[2])
+                speeds.append(np.hypot(v[0], v[1]))
+            below = np.concatenate(depth) > 0.0
+            deepest[row] = np.concatenate(depth).max()
+            speed[row] = np.concatenate(speeds)[below].mean() if below.any() else 0.0
+        motion[side] = deepest, speed
+    return motion
+
+
+def measure(scenario: Scenario, signals: Any, how: dict[str, Any], motion: Any) -> dict[str, Any]:
+    time_s = signals[TIME].to_numpy()
+    steady = time_s >= steady_from(scenario)
+    weight = scenario.subject.mass * GRAVITY
+    column = lambda name: signals[name].to_numpy()[steady]  # noqa: E731
+    vertical = sum(column(f"{side.lower()}_foot.force_z_N") for side in SIDES)
+    support = column("support.force_z_N") if "support.force_z_N" in signals.column_names else np.zeros(steady.sum())
+    down = {side: foot_contact(signals, side)[steady] for side in SIDES}
+    slips = {side: motion[side][1][steady] * down[side] for side in SIDES}
+    steps = sum((touchdowns(signals, side) >= time_s[steady][0]).sum() for side in SIDES) if steady.sum() else 0
+    loaded = {side: column(f"{side.lower()}_foot.force_z_N") >= CONTACT_ON_N for side in SIDES}
+    use = np.concatenate([column(f"{side.lower()}_foot.friction_use")[loaded[side]] for side in SIDES])
+    if steady.sum() < 2 or not use.size:
+        return how
+    period = time_s[1] - time_s[0]
+    depth = np.concatenate([motion[side][0][steady][down[side]] for side in SIDES])
+    return how | {
+        "mean_speed_m_s": float(np.polyfit(time_s[steady], column("com.x_m"), 1)[0]),
+        "mean_vertical_force_weights": float(vertical.mean() / weight),
+        "mean_with_support_weights": float((vertical + support).mean() / weight),
+        "largest_vertical_force_weights": float(
+            max(column(f"{side.lower()}_foot.force_z_N").max() for side in SIDES) / weight
+        ),
+        "friction_use_median": float(np.median(use)),
+        "friction_use_95_percent": float(np.percentile(use, 95)),
+        "slip_per_step_mm": float(1e3 * sum(slip.sum() for slip in slips.values()) * period / max(1, steps)),
+        "penetration_median_mm": float(1e3 * np.median(depth)),
+        "penetration_95_percent_mm": float(1e3 * np.percentile(depth, 95)),
+    }
+
+
+def compare(fresh: bool) -> dict[str, Any]:
+    results: dict[str, Any] = {}
+    for walk, runs in RUNS_OF.items():
+        shown = {}
+        for name in runs:
+            scenario, signals, how = signals_of(walk, name, fresh)
+            motion = sole_motion(scenario, signals)
+            results.setdefault(walk, {})[name] = measure(scenario, signals, how, motion)
+            print(walk, name, json.dumps(results[walk][name]), flush=True)
+            if name in MODELS:
+                shown[name] = (scenario, signals, motion)
+        end = min(signals[TIME][-1].as_py() for _, signals, _ in shown.values())
+        draw(walk, shown, end)
+    return results
+
+
+def draw(walk: str, shown: dict[str, Any], end: float) -> None:
+    forces = new_figure(f"{walk}: force of the ground on the right foot", height=5.2, rows=3, sharex=True)
+    soles = new_figure(f"{walk}: the right foot on the ground", height=5.2, rows=3, sharex=True)
+    for name, (_, signals, motion) in shown.items():
+        time_s = signals[TIME].to_numpy()
+        rows = (time_s >= end - LAST) & (time_s <= end)
+        force = {axis: signals[f"right_foot.force_{axis}_N"].to_numpy()[rows] for axis in "xz"}
+        on = force["z"] >= CONTACT_ON_N
+        ahead = signals["right_foot.cop_x_m"].to_numpy()[rows] - signals["right_sole.x_m"].to_numpy()[rows]
+        deepest, speed = (values[rows] for values in motion["Right"])
+        style = {"color": COLORS[name], "label": name, "linewidth": 1.0}
+        curve(forces.axes[0], time_s[rows], force["z"], **style)
+        curve(forces.axes[1], time_s[rows], force["x"], **style)
+        curve(
+            forces.axes[2],
+            time_s[rows],
+            np.where(on, signals["right_foot.friction_use"].to_numpy()[rows], np.nan),
+            **style,
+        )
+        curve(soles.axes[0], time_s[rows], np.where(on, 100 * ahead, np.nan), **style)
+        curve(soles.axes[1], time_s[rows], np.where(on, 1e3 * speed, np.nan), **style)
+        curve(soles.axes[2], time_s[rows], np.where(on, 1e3 * deepest, np.nan), **style)
+    level(forces.axes[0], shown[MODELS[0]][0].subject.mass * GRAVITY, "body weight")
+    soles.axes[1].set_yscale("symlog", linthresh=1.0)
+    forces.axes[2].set_ylim(0.0, 1.1)
+    for figure, names in (
+        (forces, ("vertical [N]", "fore-aft [N]", "friction use")),
+        (soles, ("centre of pressure\nahead of ankle [cm]", "slip [mm/s]", "penetration [mm]")),
+    ):
+        for axes, text in zip(figure.axes, names, strict=True):
+            label(axes, "", text)
+        label(figure.axes[-1], "time [s]", names[-1])
+        legend(figure.axes[0])
+        figure.align_ylabels()
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    save(forces, IMAGES / f"{walk}_forces.png")
+    save(soles, IMAGES / f"{walk}_soles.png")
+
+
+def main() -> None:
+    logging.getLogger("drake").setLevel(logging.ERROR)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["evaluation", "compare"])
+    parser.add_argument("--fresh", action="store_true", help="simulate what has been simulated already")
+    args = parser.parse_args()
+    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    if args.what == "evaluation":
+        results["evaluation"] = evaluation()
+        print(json.dumps(results["evaluation"]))
+    else:
+        results |= compare(args.fresh)
+    RESULTS.write_text(json.dumps(results, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

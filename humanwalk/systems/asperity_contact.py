@@ -1,0 +1,219 @@
+"""LeafSystem: the thesis' contact between soles and ground, as forces on the bodies of the feet."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from pydrake.common.value import Value
+from pydrake.multibody.math import SpatialForce
+from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    EventStatus,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+    State,
+    ValueProducer,
+)
+
+from humanwalk.body.contact import SolePatch
+from humanwalk.control.asperity import AsperityParameters
+from humanwalk.control.contact_step import ContactMemory, Contacts, body_jacobians, body_mobility, contact_step
+from humanwalk.control.ground import Ground
+from humanwalk.control.ground_force import foot_force
+
+Array = npt.NDArray[np.float64]
+
+
+class AsperityContact(LeafSystem):
+    """Normal force and asperity friction on patches of soles: b bodies, one patch of k points each, on f feet.
+
+    The forces at a time are those that the law gives at the end of the step that begins then (see `contact_step`).
+
+    Inputs:
+        state: plant state [q; v].
+
+    Outputs:
+        spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
+        foot_forces: (8 f) as of FootForceObserver.
+        friction_use: (f) as of FootForceObserver.
+        point_forces: (3 b k) on each point in W [N].
+        depth: (b k) of each point below the surface [m], negative above it.
+        slip: (b k) speed of each pressing point along the surface [m/s].
+        stretch: (b k) of the asperity springs [m].
+        anchors: (3 b k) where the springs are fastened, in W [m].
+
+    State, discrete: what each step leaves to the next, and the bodies' mobility, which is renewed more seldom.
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        feet: Sequence[Sequence[SolePatch]],
+        ground: Ground,
+        parameters: AsperityParameters,
+        joint_impedance: Array,
+        mobility_period: float,
+    ) -> None:
+        """Make the contact of a finalised discrete plant.
+
+        Args:
+            plant: whose bodies touch; it must not collide them with the ground itself.
+            feet: the patches of each foot, no two of one body, all with the same number of points.
+            ground: the surface.
+            parameters: of the law.
+            joint_impedance: what the plant's step adds to the diagonal of its mass matrix, shape (nv,).
+            mobility_period: time between two computations of the bodies' mobility [s].
+        """
+        super().__init__()
+        self._plant, self._plant_context = plant, plant.CreateDefaultContext()
+        self._ground, self._parameters, self._joint_impedance = ground, parameters, joint_impedance
+        patches = [patch for foot in feet for patch in foot]
+        self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
+        # The origin comes first, so that one call gives it and all points.
+        self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
+        self._area = np.array([patch.area for patch in patches])
+        ends = np.cumsum([len(foot) for foot in feet])
+        self._feet = [slice(end - len(foot), end) for foot, end in zip(feet, ends, strict=True)]
+        self._step = plant.time_step()
+        b, k = self._area.shape
+
+        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        self._shapes = ((b, k, 3), (b, k), (b, k), (b, 6), (b, 6))
+        self._memory = [self.DeclareDiscreteState(int(np.prod(shape))) for shape in self._shapes]
+        self._mobility = self.DeclareDiscreteState((6 * b) ** 2)
+        # Unrestricted, as the plant's step is: a simulator runs these before discrete updates, which would see a plant
+        # that has already moved.
+        self.DeclareInitializationUnrestrictedUpdateEvent(self._forget)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(self._step, 0.0, self._remember)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(mobility_period, 0.0, self._renew_mobility)
+
+        self._contacts = self.DeclareCacheEntry(
+            "contacts", ValueProducer(lambda: Value[object](), self._calc_contacts), {self.all_sources_ticket()}
+        )
+        after = {self._contacts.ticket()}
+        self._forces_output = self.DeclareAbstractOutputPort(
+            "spatial_forces",
+            lambda: Value([ExternallyAppliedSpatialForce()]),
+            self._calc_forces,
+            prerequisites_of_calc=after,
+        )
+
+        def declare(name: str, size: int, value: Callable[[Contacts], Array]) -> OutputPort:
+            def calc(context: Context, output: BasicVector) -> None:
+                output.SetFromVector(value(self._contacts.Eval(context)).ravel())
+
+            return self.DeclareVectorOutputPort(name, size, calc, prerequisites_of_calc=after)
+
+        self._foot_forces_output = declare("foot_forces", 8 * len(feet), self._foot_forces)
+        self._friction_use_output = declare("friction_use", len(feet), self._friction_use)
+        self._point_forces_output = declare("point_forces", 3 * b * k, lambda contacts: contacts.force)
+        self._depth_output = declare("depth", b * k, lambda contacts: contacts.depth)
+        self._slip_output = declare("slip", b * k, lambda contacts: contacts.slip)
+        self._stretch_output = declare("stretch", b * k, lambda contacts: contacts.stretch)
+        self._anchors_output = self.DeclareStateOutputPort("anchors", self._memory[0])
+
+    def _kinematics(self, context: Context) -> tuple[Array, Array, Array]:
+        """Origins of the bodies (b, 3), their points (b, k, 3) and their velocities (b, 6) in W."""
+        plant, inner = self._plant, self._plant_context
+        plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
+        world = plant.world_frame()
+        p_W = np.array(
+            [
+                plant.CalcPointsPositions(inner, body.body_frame(), points, world).T
+                for body, points in zip(self._bodies, self._points, strict=True)
+            ]
+        )
+        V = np.array([plant.EvalBodySpatialVelocityInWorld(inner, body).get_coeffs() for body in self._bodies])
+        return p_W[:, 0], p_W[:, 1:], V
+
+    def _calc_contacts(self, context: Context, output: Value) -> None:
+        p_WB, p_WQ, V = self._kinematics(context)
+        memory = ContactMemory(
+            *(
+                context.get_discrete_state(index).value().reshape(shape)
+                for index, shape in zip(self._memory, self._shapes, strict=True)
+            )
+        )
+        mobility = context.get_discrete_state(self._mobility).value().reshape(V.size, V.size)
+        contacts = contact_step(
+            self._parameters, self._ground, self._area, p_WB, p_WQ, V, memory, mobility, self._step, context.get_time()
+        )
+        output.set_value(contacts)
+
+    def _remember(self, context: Context, state: State) -> EventStatus:
+        self._write(state, self._contacts.Eval(context).memory)
+        return EventStatus.Succeeded()
+
+    def _forget(self, context: Context, state: State) -> EventStatus:
+        _, p_WQ, V = self._kinematics(context)
+        self._write(state, ContactMemory.fresh(p_WQ, V))
+        return self._renew_mobility(context, state)
+
+    def _write(self, state: State, memory: ContactMemory) -> None:
+        for index, value in zip(
+            self._memory, (memory.anchor, memory.load, memory.grip, memory.V, memory.F), strict=True
+        ):
+            state.get_mutable_discrete_state(index).set_value(value.ravel())
+
+    def _renew_mobility(self, context: Context, state: State) -> EventStatus:
+        plant, inner = self._plant, self._plant_context
+        plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
+        G = body_mobility(
+            plant.CalcMassMatrix(inner), body_jacobians(plant, inner, self._bodies), self._joint_impedance
+        )
+        state.get_mutable_discrete_state(self._mobility).set_value(G.ravel())
+        return EventStatus.Succeeded()
+
+    def _calc_forces(self, context: Context, output: Value) -> None:
+        forces = []
+        for body, wrench in zip(self._bodies, self._contacts.Eval(context).memory.F, strict=True):
+            force = ExternallyAppliedSpatialForce()
+            force.body_index = body.index()
+            force.F_Bq_W = SpatialForce(wrench)
+            forces.append(force)
+        output.set_value(forces)
+
+    def _foot_forces(self, contacts: Contacts) -> Array:
+        return np.array([foot_force(*contacts.total(bodies)).vector for bodies in self._feet])
+
+    def _friction_use(self, contacts: Contacts) -> Array:
+        return np.array([contacts.friction_use(bodies) for bodies in self._feet])
+
+    def get_state_input_port(self) -> InputPort:
+        """Input state."""
+        return self._state
+
+    def get_spatial_forces_output_port(self) -> OutputPort:
+        """Output spatial_forces."""
+        return self._forces_output
+
+    def get_foot_forces_output_port(self) -> OutputPort:
+        """Output foot_forces."""
+        return self._foot_forces_output
+
+    def get_friction_use_output_port(self) -> OutputPort:
+        """Output friction_use."""
+        return self._friction_use_output
+
+    def get_point_forces_output_port(self) -> OutputPort:
+        """Output point_forces."""
+        return self._point_forces_output
+
+    def get_depth_output_port(self) -> OutputPort:
+        """Output depth."""
+        return self._depth_output
+
+    def get_slip_output_port(self) -> OutputPort:
+        """Output slip."""
+        return self._slip_output
+
+    def get_stretch_output_port(self) -> OutputPort:
+        """Output stretch."""
+        return self._stretch_output
+
+    def get_anchors_output_port(self) -> OutputPort:
+        """Output anchors."""
+        return self._anchors_output

@@ -1,0 +1,65 @@
+"""The same walk on three contact models: what they must all obey, and how far apart they may be."""
+
+import numpy as np
+import pytest
+
+from humanwalk.body import SIDES
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+
+MODELS = ("point", "hydroelastic", "asperity")
+WEIGHT = 70.0 * 9.81
+STRIDE = 0.5 / (0.6 * 1.4)
+"""Of the thesis' walk: L / (beta v), E26 [s]."""
+
+
+@pytest.fixture(scope="module")
+def walks():
+    """By model, the last stride of the thesis' walk, at 200 Hz."""
+    last = {}
+    for model in MODELS:
+        outcome = simulate(load_scenario("thesis", {"contact": model, "duration": "1.6"}))
+        assert outcome.survived
+        time = outcome.signals["time_s"].to_numpy()
+        last[model] = outcome.signals.filter(time > time[-1] - STRIDE)
+    return last
+
+
+def column(signals, name):
+    return signals[name].to_numpy()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_ground_and_support_carry_the_weight_over_a_stride(walks, model):
+    """Samples of 5 ms miss some of a heel strike; within 4 % of m g."""
+    signals = walks[model]
+    vertical = sum(column(signals, f"{side.lower()}_foot.force_z_N") for side in SIDES)
+    carried = (vertical + column(signals, "support.force_z_N")).mean()
+    lifted = 70.0 * np.diff(column(signals, "com.velocity_z_m_s")[[0, -1]])[0] / STRIDE
+    assert carried - lifted == pytest.approx(WEIGHT, rel=0.04)
+
+
+@pytest.mark.parametrize("model", ["hydroelastic", "asperity"])
+def test_models_agree_on_the_walk(walks, model):
+    reference, other = walks["point"], walks[model]
+    for axis, apart in (("x", 0.01), ("y", 0.005), ("z", 0.01)):
+        difference = column(other, f"com.{axis}_m") - column(reference, f"com.{axis}_m")
+        assert np.abs(difference).max() < apart
+    for side in SIDES:
+        force, expected = (column(signals, f"{side.lower()}_foot.force_z_N").mean() for signals in (other, reference))
+        assert force == pytest.approx(expected, abs=0.1 * WEIGHT)
+        ahead = [
+            np.average(
+                column(signals, f"{side.lower()}_foot.cop_x_m") - column(signals, f"{side.lower()}_sole.x_m"),
+                weights=column(signals, f"{side.lower()}_foot.force_z_N"),
+            )
+            for signals in (other, reference)
+        ]
+        assert ahead[0] == pytest.approx(ahead[1], abs=0.04)
+
+
+def test_asperity_friction_is_never_more_than_the_ground_can_give(walks):
+    for side in SIDES:
+        use = column(walks["asperity"], f"{side.lower()}_foot.friction_use")
+        assert use.max() <= 1.0 + 1e-9
+        assert use.max() > 0.3
