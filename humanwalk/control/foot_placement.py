@@ -35,23 +35,20 @@ class StepPlacement:
     hurry_wider: float = quantity(0.35, "m", 0.2, 1.0)
     """The clock hurries when that foothold is farther sideways than this."""
 
-    hurry_longer: float = quantity(0.22, "m", 0.0, 1.0)
-    """The clock hurries when that foothold is farther along the walk than the planned one by more than this."""
-
     smoothing: float = quantity(0.02, "s", 0.0, 0.2)
     """Time constant of the foothold."""
 
     freeze: float = quantity(0.04, "s", 0.0, 0.2)
     """The foothold is settled this long before touchdown."""
 
-    def within_reach(self, wanted: complex, planned: complex, stance: Side) -> tuple[complex, float]:
+    def within_reach(self, wanted: complex, stance: Side) -> tuple[complex, float]:
         """The nearest foothold that legs reach uncrossed, and by how much the wanted one calls for a hurry [m]."""
         outward = -1.0 if stance == "Left" else 1.0
         width = outward * wanted.imag
         beyond = max(
             self.narrowest - self.hurry_narrower - width,
             width - self.hurry_wider,
-            abs(wanted.real) - abs(planned.real) - self.hurry_longer,
+            abs(wanted.real) - 0.95 * self.longest,
             0.0,
         )
         foothold = complex(

@@ -60,7 +60,7 @@ class StepTiming:
     hurry: float = quantity(15.0, "1/m", 0.0, 100.0)
     """Extra rate of the clock per metre by which the foothold that balance wants is out of reach."""
 
-    hurry_limit: float = quantity(1.5, "", 0.0, 3.0)
+    hurry_limit: float = quantity(0.8, "", 0.0, 3.0)
     """Greatest extra rate of the clock."""
 
 
@@ -296,13 +296,13 @@ class StepPlanner:
             on_ball=state.phase is Phase.SINGLE_SUPPORT and self._heel_is_up(state, command),
         )
 
-        gain = foothold_gain(self.frequency, timing.double_support)
-        error = (forward(segments, xi, self.frequency) - end) / u
-        planned = gait.displacement.left if stance_is_left else gait.displacement.right
-        foothold, beyond = self.parameters.placement.within_reach(planned + gain * error, planned, state.stance)
-        rate = 1.0 + min(timing.hurry * beyond, timing.hurry_limit)
-        swing = state.swing
+        rate, swing = 1.0, state.swing
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
+            error = (forward(segments, xi, self.frequency) - end) / u
+            wanted = gait.displacement.left if stance_is_left else gait.displacement.right
+            wanted += foothold_gain(self.frequency, timing.double_support) * error
+            foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance)
+            rate += min(timing.hurry * beyond, timing.hurry_limit)
             swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
 
         feet: dict[Side, FootReference] = {
