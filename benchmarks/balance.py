@@ -43,8 +43,8 @@ JOINT_NOISE = 0.01
 PUSH_TIMES = [8.0 + 1.04 * share for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
 """Five timings over a stride, in the steady walk [s]."""
 
-AFTER_PUSH = 5.0
-"""Who is up this long after a push has survived it [s]: nine steps."""
+AFTER_PUSH = 4.0
+"""Who is up this long after a push has survived it [s]: seven steps."""
 
 
 def walk(speed: float, duration: float, **overrides: str) -> Scenario:

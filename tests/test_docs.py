@@ -1,11 +1,12 @@
 """The book's code runs, and its pictures are those of what is shipped."""
 
+import dataclasses
 import re
 from pathlib import Path
 
 import pytest
 
-from humanwalk.scenario import parse_scenario, shipped_scenarios
+from humanwalk.scenario import BalancedWalkParameters, parse_scenario, shipped_scenarios
 
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO = sorted((DOCS / "howto").glob("*.md"))
@@ -37,6 +38,26 @@ def test_there_is_code_to_run():
 @pytest.mark.parametrize("name", shipped_scenarios())
 def test_every_scenario_has_its_diagram_in_the_book(name):
     assert (DOCS / "images" / f"diagram_{name}.svg").read_text(encoding="utf-8").count("name=") > 8
+
+
+def gains(parameters, path=""):
+    """Name, default and unit of every number, a task's numbers together, as docs/balance.md writes them."""
+    for field in dataclasses.fields(parameters):
+        value, name = getattr(parameters, field.name), f"{path}{field.name}"
+        if "unit" in field.metadata:
+            yield name, f"{value:g}", field.metadata["unit"]
+        elif hasattr(value, "stiffness"):
+            numbers = dataclasses.asdict(value)
+            units = ["1/s2", "1/s", "-"][: len(numbers)]
+            yield name, " / ".join(f"{float(f'{x:.3g}'):g}" for x in numbers.values()), ", ".join(units)
+        elif dataclasses.is_dataclass(value) and name != "command":
+            yield from gains(value, f"{name}.")
+
+
+def test_the_table_of_gains_is_the_code():
+    page = (DOCS / "balance.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([a-z_.]+)` \| ([^|]+?) \| ([^|]*?) ?\| [^|]+ \|$", page, re.MULTILINE)
+    assert [row for row in rows if row[0] != "leg_contact"] == list(gains(BalancedWalkParameters()))
 
 
 def test_the_moving_picture_is_light_enough_for_a_first_screen():

@@ -296,26 +296,14 @@ class StepPlanner:
             on_ball=state.phase is Phase.SINGLE_SUPPORT and self._heel_is_up(state, command),
         )
 
-        rate = 1.0
-        swing = state.swing
+        rate, swing = 1.0, state.swing
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
-            remaining = timing.step - state.elapsed
-            gain = foothold_gain(self.frequency, timing.double_support)
             error = (forward(segments, xi, self.frequency) - end) / u
-            wanted = (gait.displacement.left if stance_is_left else gait.displacement.right) + gain * error
+            wanted = gait.displacement.left if stance_is_left else gait.displacement.right
+            wanted += foothold_gain(self.frequency, timing.double_support) * error
             foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
-            if remaining > self.parameters.placement.freeze:
-                goal = state.ankle(state.stance) + u * foothold
-                share = self.period / (self.period + self.parameters.placement.smoothing)
-                is_first = state.elapsed - timing.double_support < 0.5 * self.period
-                goal = goal if is_first else swing.foothold + share * (goal - swing.foothold)
-                swing = replace(swing, foothold=goal)
-            law = self.parameters.swing
-            pace = command.speed * u
-            landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
-            motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
-            swing = replace(swing, motion=motion)
+            swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
 
         feet: dict[Side, FootReference] = {
             state.stance: self._stance_foot(state, command),
@@ -330,6 +318,18 @@ class StepPlanner:
             path=state.path.advanced(command, self.period),
         )
         return next_state, self._reference(state, body, zmp, xi, xi_reference, height, feet, foothold_W)
+
+    def _swing_on(self, state: PlannerState, swing: Swing, goal: complex, rate: float, command: Command) -> Swing:
+        """The swing one tick later, on its way to a foothold that may have moved."""
+        timing, placement, law = self.parameters.timing, self.parameters.placement, self.parameters.swing
+        remaining = timing.step - state.elapsed
+        if remaining > placement.freeze:
+            is_first = state.elapsed - timing.double_support < 0.5 * self.period
+            share = 1.0 if is_first else self.period / (self.period + placement.smoothing)
+            swing = replace(swing, foothold=swing.foothold + share * (goal - swing.foothold))
+        pace = command.speed * cmath.exp(1j * state.heading)
+        landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
+        return replace(swing, motion=swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit))
 
     def _gait(self, state: PlannerState, command: Command) -> PeriodicGait:
         """The periodic walk that is wanted now: as commanded, and a little towards the path."""

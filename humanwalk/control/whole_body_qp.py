@@ -42,6 +42,17 @@ class TaskGains:
     """Cost per squared error of the acceleration."""
 
 
+@dataclass(frozen=True)
+class PrescribedGains:
+    """Acceleration that joints have per error of their posture, exactly: there is nothing to weigh it against."""
+
+    stiffness: float = quantity(60.0, "1/s2", 0.0, 1e4)
+    """Acceleration per error of the angle."""
+
+    damping: float = quantity(15.5, "1/s", 0.0, 500.0)
+    """Acceleration per error of the rate."""
+
+
 def critical(stiffness: float, weight: float) -> TaskGains:
     """Gains of a critically damped task."""
     return TaskGains(stiffness, 2.0 * math.sqrt(stiffness), weight)
@@ -93,8 +104,8 @@ class WholeBodyParameters:
     legs: TaskGains = TaskGains(0.0, 0.0, 0.001)
     """Posture of hips, knees and ankles; only makes the solution unique."""
 
-    arms: TaskGains = critical(60.0, 1.0)
-    """Posture of arms, shoulder girdle, neck and head, which is prescribed: its weight does not count."""
+    arms: PrescribedGains = PrescribedGains()
+    """Posture of arms, shoulder girdle, neck and head."""
 
     effort: float = quantity(1e-4, "", 0.0, 1.0)
     """Cost per squared joint acceleration."""
@@ -208,7 +219,7 @@ class WholeBodyQp:
         self.lower, self.upper = joints.lower[order].copy(), joints.upper[order].copy()
         self.limits = joints.effort_limits[order]
         gains = [self._posture_gains(name) for name in self.names]
-        self._posture = tuple(np.array([getattr(g, f) for g in gains]) for f in ("stiffness", "damping", "weight"))
+        self._posture = tuple(np.array([getattr(g, f, 0.0) for g in gains]) for f in ("stiffness", "damping", "weight"))
         is_arm = np.array([g is parameters.arms for g in gains])
         self._prescribed = np.flatnonzero(is_arm) + 6
         self._free = np.concatenate((np.arange(6), np.flatnonzero(~is_arm) + 6))
@@ -224,7 +235,7 @@ class WholeBodyQp:
         # Drake keeps systems to the end of the process, and proxsuite's binding complains of solvers that live so long.
         weakref.finalize(self, self._solvers.clear)
 
-    def _posture_gains(self, name: str) -> TaskGains:
+    def _posture_gains(self, name: str) -> TaskGains | PrescribedGains:
         p = self.parameters
         if is_foot_posture(name):
             return p.feet

@@ -47,6 +47,16 @@ def test_jerk_is_bounded():
         assert abs(after.acceleration - before.acceleration) <= 1000.0 * DT + 1e-9
 
 
+def test_it_lands_with_the_speed_and_deceleration_that_are_asked():
+    goal, motion, t = PlanarMotion(0.7, 0.35, -30.0), PlanarMotion(0.0, 0.7, 8.0), 0.0
+    # The quintic is not made anew in its last moments, where there is nothing left to steer.
+    while t < 0.4 - 2.5 * DT:
+        motion = motion.towards(goal, 0.4 - t, DT, 1e9)
+        t += DT
+    assert motion.velocity.real == pytest.approx(0.35 + 30.0 * (0.4 - t), abs=0.1)
+    assert motion.acceleration.real == pytest.approx(-30.0, abs=6.0)
+
+
 @pytest.fixture
 def profile():
     return SwingProfile.from_lift_off(0.12, 0.3, 0.6, -2.0, 0.068, 0.25, 0.42, SwingParameters())

@@ -41,6 +41,16 @@ def test_it_pushes_at_the_centre_of_mass_of_the_body(plant, source):
     assert force.F_Bq_W.rotational() == pytest.approx([0, 0, 0])
 
 
+def test_a_context_may_hold_other_pushes(source):
+    context = source.CreateDefaultContext()
+    source.set_pushes(context, [Push(1.0, 0.1, 20.0)])
+    context.SetTime(1.05)
+    assert source.get_force_output_port().Eval(context) == pytest.approx([200.0, 0.0, 0.0])
+    assert at(source, 1.05)[1] == pytest.approx([0.0, 0.0, 0.0])
+    with pytest.raises(ValueError, match="Rib: no such body"):
+        source.set_pushes(context, [Push(body="Rib")])
+
+
 def test_a_body_that_is_none_is_refused(plant):
     with pytest.raises(ValueError, match="Rib: no such body"):
         PushSource(plant, PushParameters((Push(body="Rib"),)), seed=0)
