@@ -328,10 +328,11 @@ class WholeBodyQp:
                 solver = proxqp.dense.QP(size, program.b.size, program.lower.size, True)
                 solver.settings.eps_abs = TOLERANCE
                 solver.settings.max_iter = MOST_ITERATIONS
-                solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
                 solver.init(*program)
                 self._solvers[size] = solver
             else:
+                # Not before there is a result: it would take longer than from ProxQP's own guess.
+                solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
                 solver.update(*program, update_preconditioner=True)
             solver.solve()
             x: Array = solver.results.x
