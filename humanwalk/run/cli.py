@@ -1,4 +1,4 @@
-"""The command line: humanwalk walk, replay, video, snapshot, plot, scenarios, model, diagram."""
+"""The command line: humanwalk walk, replay, video, snapshot, plot, export, bench, scenarios, model, diagram."""
 
 import logging
 import sys
@@ -215,6 +215,53 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
     console.print(f"{run}: {result.verdict}", soft_wrap=True)
     if not result.measures_agree:
         raise typer.Exit(DIFFERS)
+
+
+@app.command(
+    epilog="Examples: humanwalk bench thesis walk -o new.json  |  humanwalk bench --compare old.json new.json"
+)
+def bench(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
+    ] = None,
+    duration: Annotated[float, typer.Option(help="Simulated time of each [s].")] = 5.0,
+    repeats: Annotated[int, typer.Option(min=1, help="How often each is measured, in turn with the others.")] = 3,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="JSON file to write.")] = None,
+    set_: SetOption = [],  # noqa: B006
+    compare: Annotated[
+        tuple[Path, Path] | None, typer.Option(metavar="OLD NEW", help="Measure nothing, compare two files of -o.")
+    ] = None,
+) -> None:
+    """Measure what scenarios cost: plant, solvers, other systems, logging, start-up, memory."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from humanwalk.run.bench import bench as measure
+    from humanwalk.run.bench import read_result, write_result
+    from humanwalk.run.bench.tables import comparison_table, cost_table, system_table
+    from humanwalk.scenario import shipped_scenarios
+
+    if compare is not None:
+        old, new = map(read_result, compare)
+        Console().print(comparison_table(old, new))
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("repeats"))
+    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
+        task = progress.add_task("", total=None)
+
+        def show(name: str, done: int, todo: int) -> None:
+            progress.update(task, description=name, completed=done, total=todo)
+
+        try:
+            overrides = {"duration": repr(duration)} | _overrides(set_)
+            result = measure(names or list(shipped_scenarios()), overrides, repeats, show)
+        except KeyboardInterrupt:
+            progress.stop()
+            console.print("interrupted; nothing was written")
+            raise typer.Exit(INTERRUPTED) from None
+    Console().print(cost_table(result), system_table(result))
+    if output is not None:
+        write_result(output, result)
+        console.print(f"{output}", soft_wrap=True)
 
 
 @app.command()
