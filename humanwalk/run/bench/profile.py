@@ -44,15 +44,18 @@ class ExclusiveClock:
 
 
 @contextmanager
-def profiled() -> Iterator[ExclusiveClock]:
+def profiled(seconds: Callable[[], float] = time.thread_time) -> Iterator[ExclusiveClock]:
     """Within the block, LeafSystems of Python that are made and simulated are timed, by the name of their class.
 
     Systems pull: a calculation that reads an input port lets Drake compute what is upstream, like the plant's
     solution of the contact, which the plant's own step shares later. So every port is read twice: the first time
     counts as `UPSTREAM` (without the systems of Python in it, which count on their own), the second, from Drake's
     cache, is what reading costs the system.
+
+    Args:
+        seconds: the clock.
     """
-    clock = ExclusiveClock()
+    clock = ExclusiveClock(seconds)
     eval_port = InputPort.Eval
     declare = {name: getattr(LeafSystem, name) for name in dir(LeafSystem) if name.startswith("Declare")}
 
