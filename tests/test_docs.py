@@ -1,6 +1,7 @@
 """The book's code runs, and its pictures are those of what is shipped."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -41,3 +42,9 @@ def test_every_scenario_has_its_diagram_in_the_book(name):
 
 def test_the_moving_picture_is_light_enough_for_a_first_screen():
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
+
+
+def test_the_tables_of_performance_are_those_of_the_results():
+    page = runpy.run_path(str(DOCS.parent / "benchmarks" / "performance_page.py"))
+    text = page["PAGE"].read_text(encoding="utf-8")
+    assert page["filled"](text) == text, "run benchmarks/performance_page.py"

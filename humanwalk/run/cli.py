@@ -278,14 +278,15 @@ def scenarios() -> None:
     Console().print(table)
 
 
-@app.command(epilog="Example: humanwalk model --mass 55 --stature 1.60 -o small.sdf")
+@app.command(epilog="Examples: humanwalk model --mass 55 --stature 1.60 -o small.sdf  |  humanwalk model -o human.xml")
 def model(
-    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write, or MJCF where it ends on .xml.")],
     mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
     stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
     look: LookOption = "person",
 ) -> None:
-    """Write the human as an SDF model that Drake parses."""
+    """Write the human as an SDF model for Drake, or as an MJCF model for MuJoCo."""
+    from humanwalk.body.mjcf import to_mjcf
     from humanwalk.body.plant import Subject
     from humanwalk.body.sdf import to_sdf
     from humanwalk.quantity import check
@@ -294,7 +295,8 @@ def model(
     _require_look(look)
     subject = Subject(mass=mass, stature=stature)
     check(subject, "subject")
-    write_text(output, to_sdf(subject.skeleton, look))  # type: ignore[arg-type]
+    write = to_mjcf if output.suffix == ".xml" else to_sdf
+    write_text(output, write(subject.skeleton, look))  # type: ignore[arg-type]
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
 
 
