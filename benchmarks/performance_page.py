@@ -71,9 +71,7 @@ def scaling_contacts() -> str:
 def scaling_workers() -> str:
     data = load("scaling_workers")
     rows = [[str(r["workers"]), f"{r['simulated_s_per_s']:.2f}", f"{r['ratio']:.2f}"] for r in data["found"]]
-    return (
-        table(["processes", "simulated seconds per second", "ratio"], rows) + f"\n\n{measured_on(data['machine'])}"
-    )
+    return table(["processes", "simulated seconds per second", "ratio"], rows) + f"\n\n{measured_on(data['machine'])}"
 
 
 def accuracy() -> str:
@@ -136,8 +134,8 @@ def mujoco() -> str:
     dynamics, fall = data["dynamics"], data["fall"]
     return (
         f"Mass matrix in 50 random states: greatest difference {dynamics['mass_matrix_relative']:.1e} of its greatest "
-        f"element; Coriolis, gyroscopic and gravity forces: {dynamics['bias_forces_relative']:.1e}. Free fall of a limp, "
-        f"turning body, 0.3 s: centre of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m (Drake) and "
+        f"element; Coriolis, gyroscopic and gravity forces: {dynamics['bias_forces_relative']:.1e}. Free fall of a "
+        f"limp, turning body, 0.3 s: centre of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m (Drake) and "
         f"{fall['com_off_parabola_m_mujoco']:.1e} m (MuJoCo), angles of the two within "
         f"{fall['angle_difference_rad']:.1e} rad.\n\n"
         + table(["", "standing", "thesis' walk"], rows)
