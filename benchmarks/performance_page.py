@@ -135,8 +135,8 @@ def mujoco() -> str:
     return (
         f"Mass matrix in 50 random states: greatest difference {dynamics['mass_matrix_relative']:.1e} of its greatest "
         f"element; Coriolis, gyroscopic and gravity forces: {dynamics['bias_forces_relative']:.1e}. Free fall of a "
-        f"limp, turning body, 0.3 s: centre of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m (Drake) and "
-        f"{fall['com_off_parabola_m_mujoco']:.1e} m (MuJoCo), angles of the two within "
+        f"limp, turning body, 0.3 s: centre of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m "
+        f"(Drake) and {fall['com_off_parabola_m_mujoco']:.1e} m (MuJoCo), angles of the two within "
         f"{fall['angle_difference_rad']:.1e} rad.\n\n"
         + table(["", "standing", "thesis' walk"], rows)
         + f"\n\n{measured_on(data['machine'])} MuJoCo {data['machine']['mujoco']}."

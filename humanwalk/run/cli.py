@@ -217,9 +217,7 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
         raise typer.Exit(DIFFERS)
 
 
-@app.command(
-    epilog="Examples: humanwalk bench thesis walk -o new.json  |  humanwalk bench --compare old.json new.json"
-)
+@app.command(epilog="Examples: humanwalk bench thesis walk -o new.json  |  humanwalk bench --compare old.json new.json")
 def bench(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
