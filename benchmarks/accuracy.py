@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.ticker import LogLocator, NullLocator
 from pydrake.systems.framework import EventStatus
 
 from humanwalk.control.joint_map import JointMap
@@ -30,7 +31,7 @@ from humanwalk.run.bench.timed_walk import TimedWalk
 from humanwalk.run.files import write_text
 from humanwalk.run.measures import contact_with_hysteresis
 from humanwalk.run.monitor import Monitor
-from humanwalk.run.plots.drawing import label, legend, new_figure, save
+from humanwalk.run.plots.drawing import TICK_SIZE, label, new_figure, save
 from humanwalk.run.simulate import prepare
 from humanwalk.scenario import load_scenario
 
@@ -205,23 +206,28 @@ def add_cost(rows: list[dict[str, Any]]) -> None:
 
 
 def draw(rows: list[dict[str, Any]]) -> None:
-    """Error of the ground force over the real-time factor, by method."""
-    figure = new_figure("Error of the ground force (20 ms means) over processor time", 3.6, columns=2, sharey=False)
+    """Error of the ground force over the cost, by method; every point has its step or accuracy."""
+    figure = new_figure("Error of the ground force (20 ms means) over the cost of the walk", 4.0, columns=2)
     series = [(method, "point") for method in FAMILY] + [("lagged", "hydroelastic")]
     colors = ("#1b7837", "#762a83", "#c2620e", "#404040", "#2166ac")
     for axes, scenario in zip(figure.axes, TIMED, strict=True):
-        lines = []
+        measured = [row for row in rows if row["scenario"] == scenario and "cpu_s_per_s" in row]
+        base = next(r for r in measured if (r["method"], r["contact"], r["setting"]) == ("lagged", "point", 1.0))
         for (method, contact), color in zip(series, colors, strict=True):
-            line = [r for r in rows if (r["scenario"], r["method"], r["contact"]) == (scenario, method, contact)]
-            line = [r for r in line if "cpu_s_per_s" in r]
-            x, y = [1 / r["cpu_s_per_s"] for r in line], [r["force_rms_N"] for r in line]
-            name = method if contact == "point" else contact
-            lines += axes.loglog(x, y, "o-", color=color, markersize=3, linewidth=1.0, label=name)
-            for r, place in zip(line, zip(x, y, strict=True), strict=True):
-                axes.annotate(f"{r['setting']:g}", place, fontsize=5.5, xytext=(2, 2), textcoords="offset points")
+            line = [row for row in measured if (row["method"], row["contact"]) == (method, contact)]
+            x, y = [r["cpu_s_per_s"] / base["cpu_s_per_s"] for r in line], [r["force_rms_N"] for r in line]
+            axes.plot(x, y, "o-", color=color, markersize=3, linewidth=1.0, label=f"{contact}, {method}")
+            for row, place in zip(line, zip(x, y, strict=True), strict=True):
+                axes.annotate(f"{row['setting']:g}", place, fontsize=5.5, xytext=(3, 2), textcoords="offset points")
+        axes.set(xscale="log", yscale="log")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_locator(NullLocator())
         axes.margins(x=0.08)
-        label(axes, f"{scenario}: real-time factor", "N")
-    legend(figure.axes[0], lines)
+        label(axes, f"{scenario}: cost (point, lagged, 1 ms = 1)", "N")
+    handles = figure.axes[0].get_legend_handles_labels()
+    figure.legend(*handles, loc="outside lower left", ncols=3, frameon=False, fontsize=TICK_SIZE)
     save(figure, PICTURE)
 
 

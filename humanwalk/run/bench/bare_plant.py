@@ -46,12 +46,15 @@ def record_plant(prepared: Prepared) -> PlantRecord:
     if plant.time_step() == 0:
         raise ParameterError("simulation.integrator: cenic cannot be split; allowed: discrete; set it")
     record = PlantRecord()
+    candidates = [plant.get_input_port(i) for i in range(plant.num_input_ports())]
+    # Geometry is the bare plant's own.
+    candidates.remove(plant.get_geometry_query_input_port())
     ports: list[InputPort] = []
 
     def keep(root_context: Context) -> EventStatus:
         context = plant.GetMyContextFromRoot(root_context)
         if not record.time:
-            ports.extend(port for port in _fed_ports(prepared) if port.HasValue(context))
+            ports.extend(port for port in candidates if port.HasValue(context))
             record.inputs.update({port.get_name(): [] for port in ports})
             record.start = plant.GetPositionsAndVelocities(context).copy()
         record.time.append(root_context.get_time())
@@ -62,13 +65,6 @@ def record_plant(prepared: Prepared) -> PlantRecord:
 
     prepared.simulator.set_monitor(keep)
     return record
-
-
-def _fed_ports(prepared: Prepared) -> list[InputPort]:
-    plant = prepared.plant
-    ports = (plant.get_input_port(i) for i in range(plant.num_input_ports()))
-    scene_graph = plant.get_geometry_query_input_port().get_index()
-    return [port for port in ports if port.get_index() != scene_graph]
 
 
 class BarePlant:
