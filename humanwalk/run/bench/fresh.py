@@ -6,6 +6,7 @@ import resource
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from humanwalk.quantity import ParameterError
@@ -62,9 +63,13 @@ def measure_repeat(scenario: Scenario, began: float) -> dict[str, Any]:
 
 
 def peak_memory_MB() -> float:
-    """The most memory that this process ever had in use [MB]."""
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
+    """The most memory that this process had in use since it began [MB]."""
+    status = Path("/proc/self/status")
+    if status.exists():
+        # Linux's getrusage would count the memory of the process that started this one, too.
+        (peak,) = (line for line in status.read_text(encoding="ascii").splitlines() if line.startswith("VmHWM:"))
+        return int(peak.split()[1]) * 1024 / 1e6
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
 
 
 def main(began: float) -> None:
