@@ -242,6 +242,9 @@ def bench(
         old, new = map(read_result, compare)
         Console().print(comparison_table(old, new))
         return
+    if output is not None and not output.parent.is_dir():
+        # Said now, not after the measuring.
+        raise ParameterError(f"--output {output}: no such folder; allowed: a file in a folder that exists; make it")
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("repeats"))
     with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
         task = progress.add_task("", total=None)

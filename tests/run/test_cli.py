@@ -254,6 +254,10 @@ def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_pat
     assert "1.00" in out
 
 
+def test_bench_into_no_folder_is_refused_before_it_measures(refusal):
+    assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
+
+
 def test_bench_compares_only_what_it_wrote(refusal, tmp_path):
     (tmp_path / "other.json").write_text("{}")
     assert "other.json: is no result" in refusal("bench", "--compare", "other.json", "other.json")
