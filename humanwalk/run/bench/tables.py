@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
+from rich import box
 from rich.table import Table
 
 from humanwalk.quantity import ParameterError
@@ -28,25 +29,17 @@ share of it; `x real` the real-time factor."""
 def cost_table(result: BenchResult) -> Table:
     """Costs by scenario."""
     of = result.machine
-    table = Table(
-        title=f"ms for a simulated second, median of {result.repeats}; {of['processor']}, load {of['load']:.1f}"
-    )
-    _columns(table)
+    table = _table(f"ms for a simulated second, median of {result.repeats}; {of['processor']}, load {of['load']:.1f}")
     for name, cost in result.scenarios.items():
         table.add_row(name, *(format(value(cost), form) for _, value, form in COLUMNS))
     return table
 
 
 def system_table(result: BenchResult) -> Table:
-    """Time of our systems by scenario."""
-    table = Table(title="of our systems alone, ms for a simulated second")
-    table.add_column("system")
-    costs = result.scenarios
-    for name in costs:
-        table.add_column(name, justify="right")
-    for system in sorted({name for cost in costs.values() for name in cost.by_system}):
-        row = (cost.by_system.get(system) for cost in costs.values())
-        table.add_row(system, *("" if value is None else format(1e3 * value, ".1f") for value in row))
+    """Time of our systems by scenario, the dearest first."""
+    table = Table("scenario", "of our systems alone, ms for a simulated second", box=box.SIMPLE_HEAD)
+    for name, cost in result.scenarios.items():
+        table.add_row(name, ", ".join(f"{system} {1e3 * seconds:.1f}" for system, seconds in cost.by_system.items()))
     return table
 
 
@@ -73,8 +66,7 @@ def ratios(old: BenchResult, new: BenchResult) -> dict[str, dict[str, float | No
 def comparison_table(old: BenchResult, new: BenchResult) -> Table:
     """Ratios new/old by scenario; says where the two were not measured alike."""
     differs = _differences(old, new)
-    table = Table(title="new / old" + (f"; not measured alike: {', '.join(differs)}" if differs else ""))
-    _columns(table)
+    table = _table("new / old" + (f"; not measured alike: {', '.join(differs)}" if differs else ""))
     for name, row in ratios(old, new).items():
         table.add_row(name, *("-" if value is None else format(value, ".2f") for value in row.values()))
     return table
@@ -89,7 +81,9 @@ def _differences(old: BenchResult, new: BenchResult) -> list[str]:
     return [name for name in before if before[name] != after.get(name)]
 
 
-def _columns(table: Table) -> None:
-    table.add_column("scenario")
+def _table(title: str) -> Table:
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table.add_column("scenario", no_wrap=True)
     for heading, _, _ in COLUMNS:
         table.add_column(heading, justify="right")
+    return table

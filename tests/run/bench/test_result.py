@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rich.console import Console
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.bench import BenchResult, ScenarioCost, read_result, write_result
 from humanwalk.run.bench.measure import bench, put_together
 from humanwalk.run.bench.profile import UPSTREAM
 from humanwalk.run.bench.result import machine
-from humanwalk.run.bench.tables import comparison_table, cost_table, ratios, system_table
+from humanwalk.run.bench.tables import COLUMNS, comparison_table, cost_table, ratios, system_table
 
 
 def repeat(full, unrecorded, bare, **profile):
@@ -123,10 +124,15 @@ def test_a_comparison_says_what_was_not_alike():
     assert "processor" in comparison_table(RESULT, other).title
 
 
-def test_tables_have_a_row_for_every_scenario_and_every_system():
+def test_tables_have_a_row_for_every_scenario_and_fit_a_terminal():
     result = faster(2.0)
-    assert cost_table(result).row_count == 2
-    assert system_table(result).row_count == len(COST.by_system)
+    console = Console(width=80, record=True, quiet=True)
+    console.print(cost_table(result), system_table(result))
+    text = console.export_text()
+    for name, cost in result.scenarios.items():
+        assert f"{name} " in text
+        assert all(f"{system} " in text for system in cost.by_system)
+    assert all(word in text for heading, _, _ in COLUMNS for word in heading.split())
 
 
 def test_the_machine_has_a_name():
