@@ -16,6 +16,8 @@ from humanwalk.run.files import write_text
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
 PAGE = ROOT / "docs" / "performance.md"
+BUSY = 1.5
+"""Load above which more than the measured process was running."""
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -24,9 +26,10 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def measured_on(machine: dict[str, Any]) -> str:
+    busy = " The machine was busy with other work: ratios count, times do not." if machine["load"] > BUSY else ""
     return (
         f"Measured on: {machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f}, "
-        f"Drake {machine['drake']}, Python {machine['python']}."
+        f"Drake {machine['drake']}, Python {machine['python']}.{busy}"
     )
 
 
@@ -43,7 +46,7 @@ def bench() -> str:
     seconds = next(iter(result.scenarios.values())).duration_s
     return (
         table(["scenario", *(heading for heading, _, _ in COLUMNS)], rows)
-        + f"\n\n{measured_on(result.machine)} {result.repeats} repeats of {seconds:g} s."
+        + f"\n\n{measured_on(result.machine)} Repeats: {result.repeats}, of {seconds:g} s."
     )
 
 
@@ -151,8 +154,8 @@ SECTIONS: dict[str, Callable[[], str]] = {
 def filled(page: str) -> str:
     """The page with the tables of the results."""
     for name, section in SECTIONS.items():
-        marks = re.compile(rf"(<!-- {name} -->\n).*?(\n<!-- end -->)", re.DOTALL)
-        content = f"\n{section()}\n"
+        marks = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+        content = f"\n{section()}\n\n"
         page, found = marks.subn(lambda match, content=content: match[1] + content + match[2], page)
         if found != 1:
             raise ValueError(f"{PAGE}: needs one mark <!-- {name} -->, has {found}")
