@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -62,3 +63,9 @@ def test_the_table_of_gains_is_the_code():
 
 def test_the_moving_picture_is_light_enough_for_a_first_screen():
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
+
+
+def test_the_tables_of_performance_are_those_of_the_results():
+    page = runpy.run_path(str(DOCS.parent / "benchmarks" / "performance_page.py"))
+    text = page["PAGE"].read_text(encoding="utf-8")
+    assert page["filled"](text) == text, "run benchmarks/performance_page.py"

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
@@ -25,6 +25,7 @@ from humanwalk.body.contact import (
     contact_boxes,
     contact_spheres,
 )
+from humanwalk.body.model_text import number, numbers
 from humanwalk.body.skeleton import SIDES, Joint, Segment, Skeleton, Vector3, Weld
 from humanwalk.body.visuals import Visual, visuals
 
@@ -107,14 +108,14 @@ def write_sdf(skeleton: Skeleton, path: Path) -> None:
 
 def _add_pose(element: ET.Element, origin: Vector3, rpy: Vector3 = (0, 0, 0)) -> ET.Element:
     pose = ET.SubElement(element, "pose")
-    pose.text = _numbers((*origin, *rpy))
+    pose.text = numbers((*origin, *rpy))
     return pose
 
 
 def _inertial(segment: Segment) -> ET.Element:
     inertial = ET.Element("inertial")
     _add_pose(inertial, segment.com)
-    ET.SubElement(inertial, "mass").text = _number(segment.mass)
+    ET.SubElement(inertial, "mass").text = number(segment.mass)
     inertia = ET.SubElement(inertial, "inertia")
     ixx, iyy, izz = segment.inertia
     for tag, value in (
@@ -125,7 +126,7 @@ def _inertial(segment: Segment) -> ET.Element:
         ("ixz", 0.0),
         ("iyz", 0.0),
     ):
-        ET.SubElement(inertia, tag).text = _number(value)
+        ET.SubElement(inertia, tag).text = number(value)
     return inertial
 
 
@@ -135,14 +136,14 @@ def _revolute(joint: Joint) -> ET.Element:
     ET.SubElement(element, "parent").text = joint.parent
     ET.SubElement(element, "child").text = joint.child
     axis = ET.SubElement(element, "axis")
-    ET.SubElement(axis, "xyz").text = _numbers(joint.axis)
+    ET.SubElement(axis, "xyz").text = numbers(joint.axis)
     limit = ET.SubElement(axis, "limit")
-    ET.SubElement(limit, "lower").text = _number(joint.range_rad[0])
-    ET.SubElement(limit, "upper").text = _number(joint.range_rad[1])
-    ET.SubElement(limit, "effort").text = _number(joint.effort_limit_N_m)
+    ET.SubElement(limit, "lower").text = number(joint.range_rad[0])
+    ET.SubElement(limit, "upper").text = number(joint.range_rad[1])
+    ET.SubElement(limit, "effort").text = number(joint.effort_limit_N_m)
     dynamics = ET.SubElement(axis, "dynamics")
-    ET.SubElement(dynamics, "damping").text = _number(joint.damping)
-    ET.SubElement(element, "drake:rotor_inertia").text = _number(joint.rotor_inertia)
+    ET.SubElement(dynamics, "damping").text = number(joint.damping)
+    ET.SubElement(element, "drake:rotor_inertia").text = number(joint.rotor_inertia)
     ET.SubElement(element, "drake:gear_ratio").text = "1"
     return element
 
@@ -161,12 +162,12 @@ def _visual(look: Visual) -> ET.Element:
     primitive = ET.SubElement(geometry, look.primitive)
     if look.primitive in ("ellipsoid", "box"):
         tag = "radii" if look.primitive == "ellipsoid" else "size"
-        ET.SubElement(primitive, tag).text = _numbers(look.size)
+        ET.SubElement(primitive, tag).text = numbers(look.size)
     else:
-        ET.SubElement(primitive, "radius").text = _number(look.size[0])
-        ET.SubElement(primitive, "length").text = _number(look.size[1])
+        ET.SubElement(primitive, "radius").text = number(look.size[0])
+        ET.SubElement(primitive, "length").text = number(look.size[1])
     material = ET.SubElement(visual, "material")
-    ET.SubElement(material, "diffuse").text = _numbers((*look.color, 1.0))
+    ET.SubElement(material, "diffuse").text = numbers((*look.color, 1.0))
     return visual
 
 
@@ -174,9 +175,9 @@ def _sphere_collision(sphere: ContactSphere) -> ET.Element:
     collision = ET.Element("collision", {"name": sphere.name})
     _add_pose(collision, sphere.center)
     geometry = ET.SubElement(collision, "geometry")
-    ET.SubElement(ET.SubElement(geometry, "sphere"), "radius").text = _number(sphere.radius)
+    ET.SubElement(ET.SubElement(geometry, "sphere"), "radius").text = number(sphere.radius)
     properties = _proximity(collision)
-    ET.SubElement(properties, "drake:point_contact_stiffness").text = _number(POINT_STIFFNESS)
+    ET.SubElement(properties, "drake:point_contact_stiffness").text = number(POINT_STIFFNESS)
     return collision
 
 
@@ -184,11 +185,11 @@ def _box_collision(box: ContactBox) -> ET.Element:
     collision = ET.Element("collision", {"name": box.name})
     _add_pose(collision, box.center)
     geometry = ET.SubElement(collision, "geometry")
-    ET.SubElement(ET.SubElement(geometry, "box"), "size").text = _numbers(box.size)
+    ET.SubElement(ET.SubElement(geometry, "box"), "size").text = numbers(box.size)
     properties = _proximity(collision)
     ET.SubElement(properties, "drake:compliant_hydroelastic")
-    ET.SubElement(properties, "drake:hydroelastic_modulus").text = _number(HYDRO_MODULUS)
-    ET.SubElement(properties, "drake:mesh_resolution_hint").text = _number(HYDRO_RESOLUTION)
+    ET.SubElement(properties, "drake:hydroelastic_modulus").text = number(HYDRO_MODULUS)
+    ET.SubElement(properties, "drake:mesh_resolution_hint").text = number(HYDRO_RESOLUTION)
     return collision
 
 
@@ -200,14 +201,5 @@ def _proximity(collision: ET.Element) -> ET.Element:
         ("hunt_crossley_dissipation", DISSIPATION),
         ("relaxation_time", RELAXATION_TIME),
     ):
-        ET.SubElement(properties, f"drake:{tag}").text = _number(value)
+        ET.SubElement(properties, f"drake:{tag}").text = number(value)
     return properties
-
-
-def _numbers(values: Iterable[float]) -> str:
-    return " ".join(_number(v) for v in values)
-
-
-def _number(value: float) -> str:
-    # Ten digits keep the arithmetic and drop the rounding noise; "+ 0.0" turns -0 into 0.
-    return f"{round(float(value), 12) + 0.0:.10g}"

@@ -259,6 +259,54 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
         raise typer.Exit(DIFFERS)
 
 
+@app.command(epilog="Examples: humanwalk bench thesis walk -o new.json  |  humanwalk bench --compare old.json new.json")
+def bench(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
+    ] = None,
+    duration: Annotated[float, typer.Option(help="Simulated time of each [s].")] = 5.0,
+    repeats: Annotated[int, typer.Option(min=1, help="How often each is measured, in turn with the others.")] = 3,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="JSON file to write.")] = None,
+    set_: SetOption = [],  # noqa: B006
+    compare: Annotated[
+        tuple[Path, Path] | None, typer.Option(metavar="OLD NEW", help="Measure nothing, compare two files of -o.")
+    ] = None,
+) -> None:
+    """Measure what scenarios cost: plant, solvers, other systems, logging, start-up, memory."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from humanwalk.run.bench import bench as measure
+    from humanwalk.run.bench import read_result, write_result
+    from humanwalk.run.bench.tables import comparison_table, cost_table, system_table
+    from humanwalk.scenario import shipped_scenarios
+
+    if compare is not None:
+        old, new = map(read_result, compare)
+        Console().print(comparison_table(old, new))
+        return
+    if output is not None and not output.parent.is_dir():
+        # Said now, not after the measuring.
+        raise ParameterError(f"--output {output}: no such folder; allowed: a file in a folder that exists; make it")
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("repeats"))
+    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
+        task = progress.add_task("", total=None)
+
+        def show(name: str, done: int, todo: int) -> None:
+            progress.update(task, description=name, completed=done, total=todo)
+
+        try:
+            overrides = {"duration": repr(duration)} | _overrides(set_)
+            result = measure(names or list(shipped_scenarios()), overrides, repeats, show)
+        except KeyboardInterrupt:
+            progress.stop()
+            console.print("interrupted; nothing was written")
+            raise typer.Exit(INTERRUPTED) from None
+    Console().print(cost_table(result), system_table(result))
+    if output is not None:
+        write_result(output, result)
+        console.print(f"{output}", soft_wrap=True)
+
+
 @app.command()
 def scenarios() -> None:
     """List the scenarios that come with humanwalk."""
@@ -273,14 +321,15 @@ def scenarios() -> None:
     Console().print(table)
 
 
-@app.command(epilog="Example: humanwalk model --mass 55 --stature 1.60 -o small.sdf")
+@app.command(epilog="Examples: humanwalk model --mass 55 --stature 1.60 -o small.sdf  |  humanwalk model -o human.xml")
 def model(
-    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write, or MJCF where it ends on .xml.")],
     mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
     stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
     look: LookOption = "person",
 ) -> None:
-    """Write the human as an SDF model that Drake parses."""
+    """Write the human as an SDF model for Drake, or as an MJCF model for MuJoCo."""
+    from humanwalk.body.mjcf import to_mjcf
     from humanwalk.body.plant import Subject
     from humanwalk.body.sdf import to_sdf
     from humanwalk.quantity import check
@@ -289,7 +338,8 @@ def model(
     _require_look(look)
     subject = Subject(mass=mass, stature=stature)
     check(subject, "subject")
-    write_text(output, to_sdf(subject.skeleton, look))  # type: ignore[arg-type]
+    write = to_mjcf if output.suffix == ".xml" else to_sdf
+    write_text(output, write(subject.skeleton, look))  # type: ignore[arg-type]
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m")
 
 

@@ -10,7 +10,7 @@ import pyarrow as pa
 from pydrake.geometry import Meshcat
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.joint_map import JointMap
@@ -64,32 +64,47 @@ class Outcome:
         return write_run(folder, self, name)
 
 
-def simulate(
-    scenario: Scenario,
-    meshcat: Meshcat | None = None,
-    on_progress: Callable[[float], None] | None = None,
-    realtime_rate: float = 0.0,
-    on_checkpoint: Callable[[Outcome], None] | None = None,
-    checkpoint_period: float = 60.0,
-) -> Outcome:
-    """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
+@dataclass(frozen=True)
+class Prepared:
+    """A simulation that has not begun.
+
+    Attributes:
+        simulator: of a root diagram with the walker in it, not initialised.
+        walker: the scenario's diagram.
+        plant: the plant in it; None where a recording is shown without physics.
+        recorder: its log sinks; None where nothing is recorded.
+    """
+
+    simulator: Simulator
+    walker: Diagram
+    plant: MultibodyPlant | None
+    recorder: Recorder | None
+
+    @property
+    def watched(self) -> System:
+        """What a Monitor watches: the plant, or the walker where there is none."""
+        return self.plant or self.walker
+
+
+def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = True) -> Prepared:
+    """Build the root diagram of a scenario and its simulator.
 
     Args:
         scenario: what to simulate.
-        meshcat: shows and records the motion; the caller publishes the recording.
-        on_progress: called with the simulated time [s] every 10 ms of it.
-        realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
-        on_checkpoint: called with what there is so far every `checkpoint_period` seconds on the clock.
+        meshcat: shows and records the motion.
+        record: whether signals are recorded.
 
     Raises:
-        ParameterError: the scenario cannot be simulated, with a mend, or failed before there was anything to record.
+        ParameterError: the scenario cannot be simulated, with a mend.
     """
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_diagram(scenario))
     plant = walker.GetSubsystemByName("plant") if walker.HasSubsystemNamed("plant") else None
     assert plant is None or isinstance(plant, MultibodyPlant)
-    joints = JointMap.of(plant or kinematics_plant(scenario.subject))
-    recorder = Recorder.add_to(builder, walker, joints, scenario.recording.signal_period)
+    recorder = None
+    if record:
+        joints = JointMap.of(plant or kinematics_plant(scenario.subject))
+        recorder = Recorder.add_to(builder, walker, joints, scenario.recording.signal_period)
     if meshcat is not None:
         add_visualizer(
             builder,
@@ -110,6 +125,32 @@ def simulate(
             ),
             simulator,
         )
+    return Prepared(simulator, walker, plant, recorder)
+
+
+def simulate(
+    scenario: Scenario,
+    meshcat: Meshcat | None = None,
+    on_progress: Callable[[float], None] | None = None,
+    realtime_rate: float = 0.0,
+    on_checkpoint: Callable[[Outcome], None] | None = None,
+    checkpoint_period: float = 60.0,
+) -> Outcome:
+    """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
+
+    Args:
+        scenario: what to simulate.
+        meshcat: shows and records the motion; the caller publishes the recording.
+        on_progress: called with the simulated time [s] every 10 ms of it.
+        realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
+        on_checkpoint: called with what there is so far every `checkpoint_period` seconds on the clock.
+
+    Raises:
+        ParameterError: the scenario cannot be simulated, with a mend, or failed before there was anything to record.
+    """
+    prepared = prepare(scenario, meshcat)
+    simulator, recorder = prepared.simulator, prepared.recorder
+    assert recorder is not None
     simulator.set_target_realtime_rate(realtime_rate)
     started = last_checkpoint = time.perf_counter()
 
@@ -122,7 +163,7 @@ def simulate(
             on_checkpoint(Outcome(scenario, recorder.table(simulator.get_context()), "unfinished", now - started))
             last_checkpoint = time.perf_counter()
 
-    monitor = Monitor(plant or walker, on_progress=look)
+    monitor = Monitor(prepared.watched, on_progress=look)
     simulator.set_monitor(monitor)
     with monitor.stop_on_interrupt():
         try:

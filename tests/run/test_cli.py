@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import pytest
 
@@ -238,6 +239,30 @@ def test_folder_that_holds_no_run_is_refused(refusal, command):
     assert "no run" in refusal(command, "none")
 
 
+# bench.
+
+
+@pytest.mark.slow
+def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_path):
+    code, out, err = humanwalk("bench", "stand", "--duration", "0.02", "--repeats", "1", "-o", "new.json")
+    assert code == 0
+    assert "stand" in out
+    assert "WholeBodyController" in out
+    assert "new.json" in err
+    code, out, _ = humanwalk("bench", "--compare", "new.json", "new.json")
+    assert code == 0
+    assert "1.00" in out
+
+
+def test_bench_into_no_folder_is_refused_before_it_measures(refusal):
+    assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
+
+
+def test_bench_compares_only_what_it_wrote(refusal, tmp_path):
+    (tmp_path / "other.json").write_text("{}")
+    assert "other.json: is no result" in refusal("bench", "--compare", "other.json", "other.json")
+
+
 # model and diagram.
 
 
@@ -251,6 +276,11 @@ def test_model_is_written_for_a_subject(humanwalk, tmp_path):
     plant.Finalize()
     assert plant.CalcTotalMass(plant.CreateDefaultContext()) == pytest.approx(55.0, rel=1e-6)
     assert plant.num_actuators() == 42
+
+
+def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
+    assert humanwalk("model", "-o", "human.xml")[0] == 0
+    assert ElementTree.parse(tmp_path / "human.xml").getroot().tag == "mujoco"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,88 @@
+"""Which of our systems costs how much, by exclusive times."""
+
+import functools
+import inspect
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from pydrake.systems.framework import Context, InputPort, LeafSystem
+
+UPSTREAM = "upstream"
+"""Name under which an `ExclusiveClock` has what systems pulled through their input ports and Python did not compute."""
+
+
+class ExclusiveClock:
+    """Adds up, by name, the time of functions without that of the functions that they call.
+
+    Attributes:
+        seconds: exclusive time by name [s].
+        calls: number of calls by name.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.thread_time) -> None:
+        """Start at zero, with a clock that returns seconds."""
+        self.seconds: defaultdict[str, float] = defaultdict(float)
+        self.calls: Counter[str] = Counter()
+        self._clock = clock
+        self._inner: list[float] = []
+
+    def run[T](self, name: str, function: Callable[..., T], *arguments: Any) -> T:
+        """Call the function and return what it returns, its time on account of `name`."""
+        begun = self._clock()
+        self._inner.append(0.0)
+        try:
+            return function(*arguments)
+        finally:
+            total = self._clock() - begun
+            self.seconds[name] += total - self._inner.pop()
+            self.calls[name] += 1
+            if self._inner:
+                self._inner[-1] += total
+
+
+@contextmanager
+def profiled(seconds: Callable[[], float] = time.thread_time) -> Iterator[ExclusiveClock]:
+    """Within the block, LeafSystems of Python that are made and simulated are timed, by the name of their class.
+
+    Systems pull: a calculation that reads an input port lets Drake compute what is upstream, like the plant's
+    solution of the contact, which the plant's own step shares later. So every port is read twice: the first time
+    counts as `UPSTREAM` (without the systems of Python in it, which count on their own), the second, from Drake's
+    cache, is what reading costs the system.
+
+    Args:
+        seconds: the clock.
+    """
+    clock = ExclusiveClock(seconds)
+    eval_port = InputPort.Eval
+    declare = {name: getattr(LeafSystem, name) for name in dir(LeafSystem) if name.startswith("Declare")}
+
+    def timed(argument: Any) -> Any:
+        owner = getattr(argument, "__self__", None)
+        if not (inspect.ismethod(argument) and isinstance(owner, LeafSystem)):
+            return argument
+        return functools.wraps(argument)(functools.partial(clock.run, type(owner).__name__, argument))
+
+    def timing(original: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(original)
+        def declare_timed(*arguments: Any, **named: Any) -> Any:
+            return original(*map(timed, arguments), **{key: timed(value) for key, value in named.items()})
+
+        return declare_timed
+
+    @functools.wraps(eval_port)
+    def read(port: InputPort, context: Context) -> Any:
+        clock.run(UPSTREAM, eval_port, port, context)
+        return eval_port(port, context)
+
+    for name, original in declare.items():
+        setattr(LeafSystem, name, timing(original))
+    InputPort.Eval = read
+    try:
+        yield clock
+    finally:
+        for name, original in declare.items():
+            setattr(LeafSystem, name, original)
+        InputPort.Eval = eval_port
