@@ -32,6 +32,20 @@ def test_nothing_but_the_ground_acts_on_it():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", ["point", "hydroelastic", "asperity"])
+def test_it_stands_on_every_ground(contact):
+    diagram = make_diagram(load_scenario("stand", {"contact": contact}))
+    simulator = Simulator(diagram)
+    context = simulator.get_context()
+    start = diagram.GetOutputPort("com").Eval(context).copy()
+    simulator.AdvanceTo(2.0)
+    com = diagram.GetOutputPort("com").Eval(context)
+    np.testing.assert_allclose(com[:3], start[:3], atol=0.03)
+    weight = diagram.GetOutputPort("foot_forces").Eval(context)[[2, 10]].sum()
+    assert weight == pytest.approx(70.0 * 9.81, rel=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
 def test_it_walks_its_first_steps(contact):
     diagram = make_diagram(
         load_scenario("walk", {"balanced.command.points": "[{time: 0.2, forward: 0.6}]", "contact": contact})
