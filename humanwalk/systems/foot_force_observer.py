@@ -59,30 +59,44 @@ class FootForceObserver(LeafSystem):
     def _calc(self, context: Context, output: BasicVector) -> None:
         results = self._contacts.Eval(context)
         f_W, tau_Wo = np.zeros((2, 3)), np.zeros((2, 3))
-
-        def add(body: int, f: Array, tau: Array) -> None:
-            foot = self._side_of_body.get(body)
-            if foot is not None:
-                f_W[foot] += f
-                tau_Wo[foot] += tau
-
+        # Of every contact with the ground, by foot: point of action and force on the foot.
+        points: tuple[list[Array], ...] = ([], [])
+        forces: tuple[list[Array], ...] = ([], [])
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
-            if self._world not in (pair.bodyA_index(), pair.bodyB_index()):
-                continue  # one leg against the other
-            f_B = pair.contact_force()
-            tau_B = _cross(pair.contact_point(), f_B)
-            add(int(pair.bodyB_index()), f_B, tau_B)
-            add(int(pair.bodyA_index()), -f_B, -tau_B)
+            found = self._foot(pair.bodyA_index(), pair.bodyB_index())
+            if found is not None:
+                foot, sign = found
+                points[foot].append(pair.contact_point())
+                forces[foot].append(sign * pair.contact_force())
         for i in range(results.num_hydroelastic_contacts()):
             info = results.hydroelastic_contact_info(i)
             surface = info.contact_surface()
-            f_M = info.F_Ac_W().translational()
-            tau_M = info.F_Ac_W().rotational() + _cross(surface.centroid(), f_M)
-            add(self._body_of_geometry[surface.id_M()], f_M, tau_M)
-            add(self._body_of_geometry[surface.id_N()], -f_M, -tau_M)
+            # The force is that on M, the first body here.
+            found = self._foot(*(self._body_of_geometry[id] for id in (surface.id_N(), surface.id_M())))
+            if found is not None:
+                foot, sign = found
+                points[foot].append(surface.centroid())
+                forces[foot].append(sign * info.F_Ac_W().translational())
+                tau_Wo[foot] += sign * info.F_Ac_W().rotational()
+        for foot in range(2):
+            if forces[foot]:
+                f = np.array(forces[foot])
+                f_W[foot] = f.sum(axis=0)
+                tau_Wo[foot] += _moments(np.array(points[foot]), f)
 
         output.SetFromVector(np.concatenate([foot_force(f_W[i], tau_Wo[i]).vector for i in range(2)]))
+
+    def _foot(self, body_A: int, body_B: int) -> tuple[int, float] | None:
+        """The foot that touches the ground, and the sign that makes a force on B one on the foot; None if none does."""
+        # Either may be the ground; two legs against each other are not meant.
+        if body_A == self._world:
+            foot, sign = self._side_of_body.get(int(body_B)), 1.0
+        elif body_B == self._world:
+            foot, sign = self._side_of_body.get(int(body_A)), -1.0
+        else:
+            return None
+        return None if foot is None else (foot, sign)
 
     def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
         feet = self._output.Eval(context).reshape(2, 8)
@@ -101,6 +115,7 @@ class FootForceObserver(LeafSystem):
         return self._friction_use_output
 
 
-def _cross(a: Array, b: Array) -> Array:
-    """a x b for two 3-vectors; numpy's general cross costs twenty times as much."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+def _moments(points: Array, forces: Array) -> Array:
+    """Sum of the cross products of rows, shape (3,); numpy's own cross takes many times as long."""
+    S = points.T @ forces
+    return np.array([S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]])
