@@ -69,3 +69,11 @@ def test_the_tables_of_performance_are_those_of_the_results():
     page = runpy.run_path(str(DOCS.parent / "benchmarks" / "performance_page.py"))
     text = page["PAGE"].read_text(encoding="utf-8")
     assert page["filled"](text) == text, "run benchmarks/performance_page.py"
+
+
+@pytest.mark.parametrize("layer", ["body", "gait", "control", "systems", "diagrams"])
+def test_the_reference_has_every_module(layer):
+    page = (DOCS / "reference" / f"{layer}.md").read_text(encoding="utf-8")
+    there = set(re.findall(r"^::: (\S+)$", page, re.MULTILINE))
+    modules = {f"humanwalk.{layer}.{file.stem}" for file in (DOCS.parent / "humanwalk" / layer).glob("[!_]*.py")}
+    assert modules - there == set()
