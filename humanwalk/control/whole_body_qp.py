@@ -311,8 +311,8 @@ class WholeBodyQp:
         limits = self.limits[free_joints]
         x_lower, x_upper = np.full(m + k, -1e4), np.full(m + k, 1e4)
         slowing = p.range_damping * v
-        x_lower[6:m] = np.minimum(p.range_stiffness * (self.lower - q) - slowing, 1e3)[free_joints]
-        x_upper[6:m] = np.maximum(p.range_stiffness * (self.upper - q) - slowing, -1e3)[free_joints]
+        x_lower[6:m] = np.clip(p.range_stiffness * (self.lower - q) - slowing, -1e4, 1e3)[free_joints]
+        x_upper[6:m] = np.clip(p.range_stiffness * (self.upper - q) - slowing, -1e3, 1e4)[free_joints]
         x_lower[m:], x_upper[m:] = 0.0, most
         program = QuadraticProgram(
             H, g, motion[:6], -rest[:6], motion[6:], -limits - rest[6:], limits - rest[6:], x_lower, x_upper
