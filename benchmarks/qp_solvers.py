@@ -1,9 +1,10 @@
 """Which library solver suits the whole-body program: time, failures and error over the programs of a walk.
 
-    python -m pip install piqp
+    python -m pip install piqp proxsuite
     python benchmarks/qp_solvers.py --duration 6
 
-PIQP is no dependency of humanwalk; ProxQP, of the package proxsuite, is the solver that it uses.
+DAQP is the solver that humanwalk uses; PIQP and ProxQP, of the package proxsuite, are none of its dependencies. The
+solvers take turns program by program.
 """
 
 import argparse
@@ -17,7 +18,7 @@ import numpy.typing as npt
 import piqp
 from proxsuite import proxqp
 
-from humanwalk.control.whole_body_qp import QuadraticProgram, WholeBodyQp
+from humanwalk.control.whole_body_qp import QuadraticProgram
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 
@@ -27,23 +28,32 @@ Solve = Callable[[QuadraticProgram], Array | None]
 
 def programs_of_a_walk(duration: float) -> list[QuadraticProgram]:
     programs: list[QuadraticProgram] = []
-    solve = WholeBodyQp._solve
+    solution = QuadraticProgram.solution
 
-    def record(self: WholeBodyQp, program: QuadraticProgram) -> Array | None:
-        programs.append(program)
-        return solve(self, program)
+    def record(self: QuadraticProgram) -> Array | None:
+        programs.append(self)
+        return solution(self)
 
-    WholeBodyQp._solve = record  # type: ignore[method-assign]
+    QuadraticProgram.solution = record  # type: ignore[method-assign]
     try:
         simulate(load_scenario("walk", {"duration": str(duration)}))
     finally:
-        WholeBodyQp._solve = solve  # type: ignore[method-assign]
+        QuadraticProgram.solution = solution  # type: ignore[method-assign]
     return programs
+
+
+def parts(program: QuadraticProgram) -> tuple[Array, ...]:
+    """H, g, A, b, C, lower, upper, x_lower, x_upper: equations and inequalities apart, as others want them."""
+    H, g, A, lower, upper = program
+    x, rows = slice(0, g.size), slice(g.size, None)
+    equation = lower[rows] == upper[rows]
+    row_bounds = (A[~equation], lower[rows][~equation], upper[rows][~equation])
+    return H, g, A[equation], upper[rows][equation], *row_bounds, lower[x], upper[x]
 
 
 def with_piqp(tolerance: float) -> Solve:
     def solve(program: QuadraticProgram) -> Array | None:
-        H, g, A, b, C, lower, upper, x_lower, x_upper = program
+        H, g, A, b, C, lower, upper, x_lower, x_upper = parts(program)
         solver = piqp.DenseSolver()
         solver.settings.eps_abs = solver.settings.eps_rel = tolerance
         column_major = np.asfortranarray
@@ -57,16 +67,17 @@ def with_proxqp(tolerance: float, warm: bool) -> Solve:
     solvers: dict[int, Any] = {}
 
     def solve(program: QuadraticProgram) -> Array | None:
+        matrices = parts(program)
         size = program.g.size
         solver = solvers.get(size) if warm else None
         if solver is None:
-            solver = solvers[size] = proxqp.dense.QP(size, program.b.size, program.lower.size, True)
+            solver = solvers[size] = proxqp.dense.QP(size, len(matrices[3]), len(matrices[5]), True)
             solver.settings.eps_abs = tolerance
             solver.settings.max_iter = 200
-            solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
-            solver.init(*program)
+            solver.init(*matrices)
         else:
-            solver.update(*program, update_preconditioner=True)
+            solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
+            solver.update(*matrices, update_preconditioner=True)
         solver.solve()
         if solver.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED:
             return solver.results.x.copy()
@@ -83,23 +94,28 @@ def main() -> None:
     programs = programs_of_a_walk(parser.parse_args().duration)
     exact = with_piqp(1e-9)
     references = [exact(program) for program in programs]
-    print(f"{len(programs)} programs\n{'solver':24}{'mean ms':>9}{'99 % ms':>9}{'failures':>9}{'worst error':>13}")
-    for name, solve in (
-        ("PIQP 1e-4", with_piqp(1e-4)),
-        ("PIQP 1e-6", with_piqp(1e-6)),
-        ("ProxQP 1e-4, cold", with_proxqp(1e-4, warm=False)),
-        ("ProxQP 1e-4, warm", with_proxqp(1e-4, warm=True)),
-    ):
-        times, failures, error = [], 0, 0.0
-        for program, reference in zip(programs, references, strict=True):
-            began = time.perf_counter()
+    solvers = {
+        "DAQP, cold": QuadraticProgram.solution,
+        "PIQP 1e-6, cold": with_piqp(1e-6),
+        "ProxQP 1e-4, cold": with_proxqp(1e-4, warm=False),
+        "ProxQP 1e-4, warm": with_proxqp(1e-4, warm=True),
+    }
+    times: dict[str, list[float]] = {name: [] for name in solvers}
+    errors: dict[str, list[float]] = {name: [] for name in solvers}
+    for program, reference in zip(programs, references, strict=True):
+        for name, solve in solvers.items():
+            began = time.process_time()
             x = solve(program)
-            times.append(1e3 * (time.perf_counter() - began))
-            if x is None:
-                failures += 1
-            elif reference is not None:
-                error = max(error, float(np.abs(x - reference)[:34].max()))
-        print(f"{name:24}{np.mean(times):9.3f}{np.percentile(times, 99):9.3f}{failures:9d}{error:13.1e}")
+            times[name].append(1e3 * (time.process_time() - began))
+            if x is not None and reference is not None:
+                errors[name].append(float(np.abs(x - reference)[:34].max()))
+    unsolved = sum(reference is None for reference in references)
+    print(f"{len(programs)} programs, {unsolved} without reference; processor time")
+    print(f"{'solver':20}{'median ms':>10}{'mean ms':>9}{'99 % ms':>9}{'failures':>9}{'worst error':>13}")
+    for name, spent in times.items():
+        failures = len(programs) - unsolved - len(errors[name])
+        summary = f"{np.median(spent):10.3f}{np.mean(spent):9.3f}{np.percentile(spent, 99):9.3f}"
+        print(f"{name:20}{summary}{failures:9d}{max(errors[name]):13.1e}")
 
 
 if __name__ == "__main__":

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
-import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+import daqp
 import numpy as np
 import numpy.typing as npt
-from proxsuite import proxqp
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
@@ -23,9 +22,10 @@ from humanwalk.quantity import quantity
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
 
-TOLERANCE = 1e-4
-"""Largest residual of the optimality conditions."""
-MOST_ITERATIONS = 200
+EQUATION = 5
+"""DAQP's word for a constraint that is an equation."""
+MOST_ITERATIONS = 500
+"""Changes of the active set; a walk's programs take 8 on average, 50 at most."""
 
 
 @dataclass(frozen=True)
@@ -136,17 +136,25 @@ class WholeBodyParameters:
 
 
 class QuadraticProgram(NamedTuple):
-    """min x'Hx/2 + g'x subject to A x = b, lower <= C x <= upper, x_lower <= x <= x_upper."""
+    """min x'Hx/2 + g'x subject to lower <= (x, A x) <= upper; where both are equal it is an equation."""
 
     H: Array
     g: Array
     A: Array
-    b: Array
-    C: Array
     lower: Array
     upper: Array
-    x_lower: Array
-    x_upper: Array
+
+    def solution(self) -> Array | None:
+        """The least x, or None where the solver finds none.
+
+        The same program has the same solution to the last bit.
+        """
+        # DAQP passes over a constraint that is not a number.
+        if not all(np.isfinite(part).all() for part in self):
+            return None
+        kind = np.where(self.lower == self.upper, EQUATION, 0).astype(np.int32)
+        x, _, flag, _ = daqp.solve(self.H, self.g, self.A, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS)
+        return x if flag > 0 else None
 
 
 @dataclass(frozen=True)
@@ -200,7 +208,7 @@ class Posture:
 
 
 class WholeBodyQp:
-    """Builds and solves the program; keeps nothing from one call to the next but the solver's memory.
+    """Builds and solves the program; keeps nothing from one call to the next.
 
     Args:
         dynamics: of the body.
@@ -231,9 +239,6 @@ class WholeBodyQp:
         self._heel = {sole.side: sole.points.mean(axis=0) for sole in self._soles if sole.is_heel}
         mu = parameters.friction
         self._edges = Directions.of(np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float))
-        self._solvers: dict[int, Any] = {}
-        # Drake keeps systems to the end of the process, and proxsuite's binding complains of solvers that live so long.
-        weakref.finalize(self, self._solvers.clear)
 
     def _posture_gains(self, name: str) -> TaskGains | PrescribedGains:
         p = self.parameters
@@ -257,7 +262,7 @@ class WholeBodyQp:
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
         program, qdd0, B, points = self.program(body, reference, posture)
-        x = self._solve(program)
+        x = program.solution()
         if x is None:
             return None
         m = self._free.size
@@ -308,38 +313,15 @@ class WholeBodyQp:
         motion[:, :m] = body.M[self._free[:, None], self._free]
         motion[:, m:] = -B[:, self._free].T
         rest = (body.h + body.M @ qdd0)[self._free]
-        limits = self.limits[free_joints]
-        x_lower, x_upper = np.full(m + k, -1e4), np.full(m + k, 1e4)
+        lower, upper = np.full(2 * m + k, -1e4), np.full(2 * m + k, 1e4)
         slowing = p.range_damping * v
-        x_lower[6:m] = np.clip(p.range_stiffness * (self.lower - q) - slowing, -1e4, 1e3)[free_joints]
-        x_upper[6:m] = np.clip(p.range_stiffness * (self.upper - q) - slowing, -1e3, 1e4)[free_joints]
-        x_lower[m:], x_upper[m:] = 0.0, most
-        program = QuadraticProgram(
-            H, g, motion[:6], -rest[:6], motion[6:], -limits - rest[6:], limits - rest[6:], x_lower, x_upper
-        )
+        lower[6:m] = np.clip(p.range_stiffness * (self.lower - q) - slowing, -1e4, 1e3)[free_joints]
+        upper[6:m] = np.clip(p.range_stiffness * (self.upper - q) - slowing, -1e3, 1e4)[free_joints]
+        lower[m : m + k], upper[m : m + k] = 0.0, most
+        torque_limits = np.concatenate((np.zeros(6), self.limits[free_joints]))
+        lower[m + k :], upper[m + k :] = -torque_limits - rest, torque_limits - rest
+        program = QuadraticProgram(H, g, motion, lower, upper)
         return program, qdd0, B, points
-
-    def _solve(self, program: QuadraticProgram) -> Array | None:
-        """Solve from the last solution with as many contacts; if that fails, once more from nothing."""
-        size = program.g.size
-        for warm in (True, False):
-            solver = self._solvers.get(size) if warm else None
-            if solver is None:
-                solver = proxqp.dense.QP(size, program.b.size, program.lower.size, True)
-                solver.settings.eps_abs = TOLERANCE
-                solver.settings.max_iter = MOST_ITERATIONS
-                solver.init(*program)
-                self._solvers[size] = solver
-            else:
-                # Not before there is a result: it would take longer than from ProxQP's own guess.
-                solver.settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
-                solver.update(*program, update_preconditioner=True)
-            solver.solve()
-            x: Array = solver.results.x
-            if solver.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED and np.isfinite(x).all():
-                return x
-        del self._solvers[size]
-        return None
 
     # Tasks: rows of J v' = a with weight w.
 

@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.control.swing_foot import PlanarMotion
 from humanwalk.control.walking_reference import FootReference, FootTask, Phase, WalkingReference
-from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp
+from humanwalk.control.whole_body_qp import Posture, QuadraticProgram, WholeBodyParameters, WholeBodyQp
 
 PARAMETERS = WholeBodyParameters()
 FRAMES = ("Pelvis", "Ribs", *FOOT_BODIES["Right"], *FOOT_BODIES["Left"])
@@ -144,3 +146,33 @@ def test_a_program_without_a_solution_gives_none_and_the_next_is_solved(dynamics
     broken = replace(body, h=body.h + 1e6)
     assert qp.solve(broken, reference_for(body), rest(qp)) is None
     assert qp.solve(body, reference_for(body), rest(qp)) is not None
+
+
+@given(st.integers(0, 10_000))
+def test_a_programs_solution_is_feasible_and_no_way_along_the_constraints_is_better(seed):
+    random = np.random.default_rng(seed)
+    root = random.normal(size=(6, 6))
+    A, inside = random.normal(size=(4, 6)), random.normal(size=6)
+    lower = np.concatenate((inside, A @ inside)) - random.uniform(0.0, 1.0, 10)
+    upper = np.concatenate((inside, A @ inside)) + random.uniform(0.0, 1.0, 10)
+    lower[6] = upper[6] = A[0] @ inside
+    program = QuadraticProgram(root @ root.T + 0.1 * np.eye(6), random.normal(size=6), A, lower, upper)
+    x = program.solution()
+    assert x is not None
+    values = np.concatenate((x, A @ x))
+    assert (values >= lower - 1e-5).all()
+    assert (values <= upper + 1e-5).all()
+    # What is convex is least where no feasible point lies downhill; all of them lie towards some point inside.
+    slope = program.H @ x + program.g
+    others = inside + random.normal(size=(200, 6)) * 0.1
+    others -= np.outer((others - inside) @ A[0], A[0]) / (A[0] @ A[0])
+    reached = np.hstack((others, others @ A.T))
+    feasible = others[((reached >= lower - 1e-12) & (reached <= upper + 1e-12)).all(axis=1)]
+    assert ((np.vstack((inside, feasible)) - x) @ slope >= -1e-4).all()
+
+
+@pytest.mark.parametrize("field", ["H", "g", "A", "lower", "upper"])
+def test_a_program_with_nan_has_no_solution(field):
+    program = QuadraticProgram(np.eye(3), np.ones(3), np.ones((1, 3)), -np.ones(4), np.ones(4))
+    assert program.solution() is not None
+    assert program._replace(**{field: np.nan * getattr(program, field)}).solution() is None

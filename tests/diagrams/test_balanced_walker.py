@@ -62,6 +62,17 @@ def test_it_walks_its_first_steps(contact):
     assert diagram.GetOutputPort("qp_status").Eval(context)[1] == 0
 
 
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_bits():
+    ends = []
+    for _ in range(2):
+        diagram = make_diagram(load_scenario("walk", {"seed": "3", "simulation.time_step": "0.002"}))
+        simulator = Simulator(diagram)
+        simulator.AdvanceTo(2.5)
+        ends.append(diagram.GetOutputPort("state").Eval(simulator.get_context()).tobytes())
+    assert ends[0] == ends[1]
+
+
 @pytest.mark.parametrize(
     "override", [{"actuators.law": "explicit"}, {"simulation.integrator": "cenic", "simulation.time_step": "0"}]
 )
