@@ -234,16 +234,18 @@ class StepPlanner:
         following = self.parameters.path
         path = following.leashed(state.path, state.path.beside(middle, command))
         beside = path.beside(middle, command)
+        stance = other(state.stance)
+        ahead = path.beside(body.foot(stance).position, command)
         return PlannerState(
             phase=Phase.DOUBLE_SUPPORT if moving else Phase.STAND,
             elapsed=0.0,
-            stance=other(state.stance),
+            stance=stance,
             right=right,
             left=left,
-            heading=beside.heading,
+            heading=ahead.heading,
             old_heading=state.heading,
             path=path,
-            turn=beside.turn,
+            turn=ahead.turn,
             to_path=following.correction(path, beside, middle, command),
             height=state.height,
             height_rate=state.height_rate,
@@ -437,6 +439,9 @@ class StepPlanner:
         lead = ((body.left.position - body.right.position) / u).real
         lead_rate = ((body.left.velocity - body.right.velocity) / u).real
         swing, swing_rate = rotation.arms * lead, rotation.arms * lead_rate
+        is_stepping = state.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+        turned = state.turn * (state.elapsed - 0.5 * self.parameters.timing.step) if is_stepping else 0.0
+        facing = state.heading + turned
         return WalkingReference(
             phase=state.phase,
             phase_time=state.elapsed,
@@ -446,8 +451,8 @@ class StepPlanner:
             com_height=height,
             right=feet["Right"],
             left=feet["Left"],
-            pelvis_yaw=state.heading - rotation.pelvis * lead,
-            chest_yaw=state.heading + rotation.chest * lead,
+            pelvis_yaw=facing - rotation.pelvis * lead,
+            chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((swing, swing_rate), (-swing, -swing_rate)),
             foothold=foothold,
         )
