@@ -21,15 +21,15 @@ class ComHeight:
     time: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant with which the mean height changes."""
 
-    amplitude: float = quantity(0.014, "m", 0.0, 0.05)
-    """Of the arcs at 1 m/s, in proportion to the speed: longer steps need lower ones between two straight legs."""
+    amplitude: float = quantity(0.009, "m", 0.0, 0.05)
+    """Of the arcs at 1 m/s, with the square of the speed, as the drop between two straight legs grows with the step."""
 
     lowest: float = quantity(0.03, "s", -0.3, 0.3)
     """The height is lowest this long after a touchdown."""
 
     def below_top(self, speed: float) -> float:
         """How far the mean of the arcs is below their top at a forward speed [m]."""
-        return self.amplitude * abs(speed)
+        return self.amplitude * speed**2
 
     def approach(self, height: float, rate: float, goal: float, dt: float) -> tuple[float, float, float]:
         """The mean height `dt` later, its rate, and its acceleration until then [m, m/s, m/s2]."""

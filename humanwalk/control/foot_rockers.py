@@ -22,7 +22,7 @@ class FootRockers:
     pitch: float = quantity(1.0, "rad", 0.0, 1.2)
     """Pitch of the foot that leaves, at the end of double support at 1 m/s and faster; in proportion below."""
 
-    slowest: float = quantity(0.5, "m/s", 0.0, 3.0)
+    slowest: float = quantity(0.2, "m/s", 0.0, 3.0)
     """In a slower walk, and in going backward, feet leave flat."""
 
     def rises(self, speed: float) -> bool:
@@ -44,12 +44,7 @@ class FootRockers:
             speed: forward [m/s].
         """
         duration = self.ball + double_support
-        final = self.pitch * briskness(speed)
+        final = self.pitch * clip(speed, 0.0, 1.0)
         s = min(since / duration, 1.0)
         pitch = (final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)
         return FootReference(FootTask.HEEL_OFF, load, yaw, pitch=pitch, toes=pitch[:2])
-
-
-def briskness(speed: float) -> float:
-    """0 in standing or going backward, 1 at 1 m/s and faster."""
-    return clip(speed, 0.0, 1.0)
