@@ -30,8 +30,9 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
-        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
+        net_actuation (42), phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
     and its own:
+        feedforward (42): torque of the controller [N m].
         command (3): see CommandSource.
         balance (9): see GaitPlanner.
         qp_status (3): see WholeBodyController.
@@ -94,6 +95,8 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
+        (plant.get_net_actuation_output_port(), "net_actuation"),
+        (controller.get_torque_output_port(), "feedforward"),
         (bank.get_held_desired_state_output_port(), "desired_state"),
         (planner.get_phase_output_port(), "phase"),
         (planner.get_contact_schedule_output_port(), "contact_schedule"),

@@ -99,8 +99,7 @@ class FootForceObserver(LeafSystem):
         return None if foot is None else (foot, sign)
 
     def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
-        feet = self._output.Eval(context).reshape(2, 8)
-        output.SetFromVector([friction_use(foot[:2], FRICTION * foot[2]) for foot in feet])
+        output.SetFromVector(friction_used(self._output.Eval(context)))
 
     def get_contact_results_input_port(self) -> InputPort:
         """Input contact_results."""
@@ -113,6 +112,11 @@ class FootForceObserver(LeafSystem):
     def get_friction_use_output_port(self) -> OutputPort:
         """Output friction_use."""
         return self._friction_use_output
+
+
+def friction_used(foot_forces: Array) -> list[float]:
+    """Output friction_use (2) from the other output (16)."""
+    return [friction_use(foot[:2], FRICTION * foot[2]) for foot in foot_forces.reshape(2, 8)]
 
 
 def _moments(points: Array, forces: Array) -> Array:

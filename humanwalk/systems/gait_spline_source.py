@@ -85,10 +85,18 @@ class GaitSplineSource(LeafSystem):
         output.SetFromVector(reference)
 
     def _calc_phase(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector([self._gait.phase(side, context.get_time()) for side in SIDES])
+        output.SetFromVector(self.phases(context.get_time()))
 
     def _calc_contact_schedule(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector([float(self._gait.in_stance(side, context.get_time())) for side in SIDES])
+        output.SetFromVector(self.schedule(context.get_time()))
+
+    def phases(self, time: float) -> list[float]:
+        """The output phase at a time [s]."""
+        return [self._gait.phase(side, time) for side in SIDES]
+
+    def schedule(self, time: float) -> list[float]:
+        """The output contact_schedule at a time [s]."""
+        return [float(self._gait.in_stance(side, time)) for side in SIDES]
 
     def get_sole_pose_output_port(self, side: Side) -> OutputPort:
         """Output X_PRs or X_PLs."""
