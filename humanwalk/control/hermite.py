@@ -33,7 +33,7 @@ class HermitePiece:
         coefficients = np.zeros((4, x0.size))
         h = t1 - t0
         if h > 0.0:
-            (q0, v0), (q1, v1) = np.split(x0, 2), np.split(x1, 2)
+            q0, v0, q1, v1 = x0[:n], x0[n:], x1[:n], x1[n:]
             chord = (q1 - q0) / h
             bend, twist = (3.0 * chord - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * chord) / (h * h)
             coefficients[:, :n] = q0, v0, bend, twist
