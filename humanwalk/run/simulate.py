@@ -164,11 +164,10 @@ def simulate(
             last_checkpoint = time.perf_counter()
 
     monitor = Monitor(prepared.watched, on_progress=look)
-    simulator.set_monitor(monitor)
     with monitor.stop_on_interrupt():
         try:
             simulator.Initialize()
-            simulator.AdvanceTo(scenario.duration)
+            monitor.advance(simulator, scenario.duration)
             end = monitor.reason or "completed"
         except ParameterError:
             raise
