@@ -1,5 +1,6 @@
 """Ends a simulation that makes no more sense: a fall, a number that is none, a person who pressed Ctrl-C."""
 
+import math
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -38,9 +39,10 @@ class Monitor:
     def __call__(self, root_context: Context) -> EventStatus:
         """Simulator monitor: look at the state every CHECK_PERIOD."""
         time = root_context.get_time()
-        if time < self._next_look - 1e-9:
+        if time < self._next_look:
             return EventStatus.DidNothing()
-        self._next_look = time + CHECK_PERIOD
+        # A multiple of the period, to the last bit: where the looks are not at the systems' own times, they add steps.
+        self._next_look = CHECK_PERIOD * (math.floor(time / CHECK_PERIOD + 1e-6) + 1)
         self.reason = self._body_says(root_context) or ("interrupted" if self.interrupted else "")
         if self.reason:
             return EventStatus.ReachedTermination(self.watched, self.reason)
@@ -55,7 +57,7 @@ class Monitor:
         context = simulator.get_context()
         self(context)
         while not self.reason and context.get_time() < until:
-            simulator.AdvanceTo(min(max(self._next_look, context.get_time()), until))
+            simulator.AdvanceTo(min(self._next_look, until))
             self(context)
 
     def _body_says(self, root_context: Context) -> str:

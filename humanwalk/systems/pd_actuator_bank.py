@@ -9,7 +9,7 @@ from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSyste
 
 from humanwalk.control.hermite import HermitePiece
 from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
-from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step
+from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
 from humanwalk.control.stability import round_down
 from humanwalk.quantity import ParameterError
 
@@ -107,6 +107,11 @@ class PdActuatorBank(LeafSystem):
             ValueProducer(allocate=lambda: Value(object()), calc=self._calc_piece),
             prerequisites_of_calc={self.input_port_ticket(port.get_index()) for port in samples},
         )
+        self._driving_piece = self.DeclareCacheEntry(
+            "driving_piece",
+            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_driving_piece),
+            prerequisites_of_calc={self._piece.ticket(), self.input_port_ticket(self._feedforward.get_index())},
+        )
         hold = {self.time_ticket(), self._piece.ticket()}
         self._held_output = self.DeclareVectorOutputPort(
             "held_desired_state", 2 * n, self._calc_held, prerequisites_of_calc=hold
@@ -143,6 +148,29 @@ class PdActuatorBank(LeafSystem):
         else:
             piece.set_value(HermitePiece.between(time, desired, time, desired))
 
+    def _calc_driving_piece(self, context: Context, piece: Value) -> None:
+        feedforward = self._fed_forward(context)
+        piece.set_value(self._piece.Eval(context).mapped(lambda rows: self._driving(rows, feedforward)))
+
+    def _driving(self, desired: Array, feedforward: Array | None) -> Array:
+        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state.
+
+        Args:
+            desired: (k, 2n) the desired state, or its coefficients of powers of time, the constant ones first.
+            feedforward: (n) if any.
+        """
+        n = self._kp.size
+        tau: Array = self._kp * desired[:, :n] + self._kd * desired[:, n:]
+        if feedforward is not None:
+            tau[0] += feedforward
+        return tau
+
+    def _driving_torque(self, context: Context) -> Array:
+        if self._sample_time.HasValue(context):
+            piece: HermitePiece = self._driving_piece.Eval(context)
+            return piece.at(context.get_time())
+        return self._driving(self._desired.Eval(context)[None], self._fed_forward(context))[0]
+
     def _held(self, context: Context) -> Array:
         """Desired state of now."""
         if self._sample_time.HasValue(context):
@@ -162,12 +190,6 @@ class PdActuatorBank(LeafSystem):
             desired[n:] = 0.0
         output.SetFromVector(desired)
 
-    def _undamped_law(self, state: Array, desired: Array, feedforward: Array | None) -> Array:
-        """The law without -kd v, not clipped; of one state (97,) or of many, (..., 97)."""
-        n = self._kp.size
-        tau: Array = self._kp * (desired[..., :n] - self._joints.positions(state)) + self._kd * desired[..., n:]
-        return tau if feedforward is None else tau + feedforward
-
     def _damping(self, state: Array) -> Array:
         """kd v."""
         damping: Array = self._kd * self._joints.velocities(state)
@@ -177,14 +199,14 @@ class PdActuatorBank(LeafSystem):
         return self._feedforward.Eval(context) if self._feedforward.HasValue(context) else None
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
-        feedforward = self._fed_forward(context)
         if self._law == "implicit":
+            feedforward = self._fed_forward(context)
             tau = np.zeros(output.size()) if feedforward is None else feedforward
             if self._rates_as_torque:
                 tau += self._kd * self._held(context)[self._kp.size :]
         else:
             state = self._state.Eval(context)
-            tau = self._undamped_law(state, self._held(context), feedforward)
+            tau = self._driving_torque(context) - self._kp * self._joints.positions(state)
             if self._limited or self._law == "explicit":
                 damping, limits = self._damping(state), self._effort_limits
                 tau = np.minimum(np.maximum(tau - damping, -limits), limits)
@@ -205,7 +227,9 @@ class PdActuatorBank(LeafSystem):
 
     def law_torque(self, state: Array, desired: Array, feedforward: Array | None) -> Array:
         """The law, not clipped, from the desired state of now; of one time or of many, shape (..., n)."""
-        return self._undamped_law(state, desired, feedforward) - self._damping(state)
+        q, v, n = self._joints.positions(state), self._joints.velocities(state), self._kp.size
+        tau = pd_torque(q, v, desired[..., :n], desired[..., n:], self._kp, self._kd)
+        return tau if feedforward is None else tau + feedforward
 
     def _calc_torque(self, context: Context, output: BasicVector) -> None:
         state = self._state.Eval(context) if self._law == "semi_implicit" else None
