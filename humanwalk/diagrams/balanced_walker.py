@@ -32,7 +32,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
         net_actuation (42), phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
     and its own:
-        feedforward (42): torque of the controller [N m].
+        feedforward (42), sample (84), sample_time (1): of the WholeBodyController, for the actuators.
         command (3): see CommandSource.
         balance (9): see GaitPlanner.
         qp_status (3): see WholeBodyController.
@@ -97,6 +97,8 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         (bank.get_saturated_output_port(), "saturated"),
         (plant.get_net_actuation_output_port(), "net_actuation"),
         (controller.get_torque_output_port(), "feedforward"),
+        (controller.get_desired_state_output_port(), "sample"),
+        (controller.get_sample_time_output_port(), "sample_time"),
         (bank.get_held_desired_state_output_port(), "desired_state"),
         (planner.get_phase_output_port(), "phase"),
         (planner.get_contact_schedule_output_port(), "contact_schedule"),

@@ -42,7 +42,8 @@ def make_walker(scenario: Scenario) -> Diagram:
         torque (42): what every joint feels of its actuator [N m].
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
-        ik_status (6): see InverseKinematicsSolver; not with a recording.
+        ik_status (6), sample (84), sample_time (1), previous_sample (84), previous_sample_time (1): see
+            InverseKinematicsSolver; not with a recording.
         pelvis_reference (13): where the pelvis should be in W: quaternion, position, angular velocity, velocity.
         phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
@@ -123,9 +124,7 @@ class _Reference:
     exports: dict[str, OutputPort]
 
 
-def _add_recording(
-    builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank
-) -> _Reference:
+def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
     """Add the recording that the scenario follows; the plant starts where it does."""
     motion = followed_motion(scenario)
     human.plant.SetDefaultPositions(start_positions(scenario, motion))
@@ -174,13 +173,14 @@ def _add_gait(
         exports["alpha"] = level_2.get_alpha_output_port()
         posture = level_2.get_balanced_posture_output_port()
     builder.Connect(posture, solver.get_posture_input_port())
-    for sample, taken in (
-        (solver.get_desired_state_output_port(), bank.get_desired_state_input_port()),
-        (solver.get_sample_time_output_port(), bank.get_sample_time_input_port()),
-        (solver.get_previous_state_output_port(), bank.get_previous_state_input_port()),
-        (solver.get_previous_time_output_port(), bank.get_previous_time_input_port()),
+    for name, sample, taken in (
+        ("sample", solver.get_desired_state_output_port(), bank.get_desired_state_input_port()),
+        ("sample_time", solver.get_sample_time_output_port(), bank.get_sample_time_input_port()),
+        ("previous_sample", solver.get_previous_state_output_port(), bank.get_previous_state_input_port()),
+        ("previous_sample_time", solver.get_previous_time_output_port(), bank.get_previous_time_input_port()),
     ):
         builder.Connect(sample, taken)
+        exports[name] = sample
     return _Reference(gait.get_pelvis_reference_output_port(), exports)
 
 

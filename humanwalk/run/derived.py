@@ -19,6 +19,8 @@ from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 Array = npt.NDArray[np.float64]
 
 TIME = "time_s"
+SAMPLES = ("sample", "sample_time", "previous_sample", "previous_sample_time")
+"""Ports with the samples that a PdActuatorBank follows, in the order in which it takes them; some walkers have two."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Derived:
 
     Attributes:
         ports: the ports' names.
-        needs: the signals that they follow from: names of other ports, or TIME.
+        needs: the signals that they follow from: names of other ports, recorded or derived before, or TIME.
         calculate: from the records of these, shape (rows, size) each, times (rows,), to those of the ports.
     """
 
@@ -47,10 +49,17 @@ def _of(system: System, walker: Diagram) -> Iterator[Derived]:
     elif isinstance(system, FootForceObserver):
         yield Derived(("friction_use",), ("foot_forces",), lambda forces: (_each(friction_used, forces),))
     elif isinstance(system, GaitSplineSource):
-        yield Derived(("phase", "contact_schedule"), (TIME,), lambda time: (_each(system.phases, time), _each(system.schedule, time)))
+        yield Derived(
+            ("phase", "contact_schedule"),
+            (TIME,),
+            lambda time: (_each(system.phases, time), _each(system.schedule, time)),
+        )
     elif isinstance(system, CommandSource):
         yield Derived(("command",), (TIME,), lambda time: (_each(system.command, time),))
     elif isinstance(system, PdActuatorBank):
+        samples = [port for port in SAMPLES if walker.HasOutputPort(port)]
+        if samples:
+            yield Derived(("desired_state",), (TIME, *samples), lambda *inputs: (system.held_states(*inputs),))
         yield Derived(("torque",), ("net_actuation", "state"), lambda net, state: (system.felt_torque(net, state),))
         if system.law != "semi_implicit" or not system.limited:
             yield Derived(("saturated",), ("net_actuation",), lambda net: (system.at_limit(net),))

@@ -18,6 +18,7 @@ from humanwalk.run.derived import TIME, Derived, derived_signals
 
 Array = npt.NDArray[np.float64]
 
+
 def _xyz(prefix: str, unit: str) -> list[str]:
     return [f"{prefix}{axis}_{unit}" for axis in "xyz"]
 
@@ -103,8 +104,9 @@ class Recorder:
         """Record every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
         columns = {port: names for port, names in signal_columns(joints).items() if walker.HasOutputPort(port)}
         derived = derived_signals(walker)
-        asked = [port for port in columns if not any(port in one.ports for one in derived)]
-        needed = [port for one in derived for port in one.needs if port != TIME]
+        known = {TIME, *(port for one in derived for port in one.ports)}
+        asked = [port for port in columns if port not in known]
+        needed = [port for one in derived for port in one.needs if port not in known]
         sinks = {
             port: LogVectorOutput(walker.GetOutputPort(port), builder, period) for port in dict.fromkeys(asked + needed)
         }
@@ -118,6 +120,10 @@ class Recorder:
         """
         logs = {port: sink.FindLog(context) for port, sink in self.sinks.items()}
         rows = min(log.num_samples() for log in logs.values())
+        if rows == 0:
+            return pa.table(
+                {name: np.empty(0) for name in (TIME, *(n for names in self.columns.values() for n in names))}
+            )
         time: Array = next(iter(logs.values())).sample_times()[:rows].copy()
         record = {port: log.data()[:, :rows].T.copy() for port, log in logs.items()} | {TIME: time}
         for one in self.derived:

@@ -40,9 +40,11 @@ class BodyObserver(LeafSystem):
         self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
 
     def motions(self, states: Array) -> tuple[Array, Array]:
-        """Both outputs at many states, a row each."""
-        soles, com = zip(*(self._motion_at(state) for state in states), strict=True)
-        return np.array(soles), np.array(com)
+        """Both outputs at many states, a row each; not a number where the state is none."""
+        soles, com = np.full((len(states), 6), np.nan), np.full((len(states), 6), np.nan)
+        for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
+            soles[row], com[row] = self._motion_at(states[row])
+        return soles, com
 
     def _motion_at(self, state: Array) -> tuple[Array, Array]:
         plant, body = self._plant, self._plant_context

@@ -107,9 +107,7 @@ class GaitPlanner(LeafSystem):
         )
         remembered = context.get_abstract_state(int(self._memory)).get_value().state
         assert remembered is not None
-        return self._remember(
-            state, *self._planner.update(remembered, body, Command(*self._command.Eval(context)))
-        )
+        return self._remember(state, *self._planner.update(remembered, body, Command(*self._command.Eval(context))))
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(Plan(planned, reference))

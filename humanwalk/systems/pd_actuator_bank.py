@@ -138,15 +138,10 @@ class PdActuatorBank(LeafSystem):
         )
 
     def _calc_piece(self, context: Context, piece: Value) -> None:
-        desired, time = self._desired.Eval(context), self._sample_time.Eval(context)[0]
+        samples = [self._desired.Eval(context), self._sample_time.Eval(context)]
         if self._previous.HasValue(context):
-            piece.set_value(
-                HermitePiece.between(
-                    self._previous_time.Eval(context)[0], self._previous.Eval(context), time, desired
-                )
-            )
-        else:
-            piece.set_value(HermitePiece.between(time, desired, time, desired))
+            samples += [self._previous.Eval(context), self._previous_time.Eval(context)]
+        piece.set_value(_piece_of(*samples))
 
     def _calc_driving_piece(self, context: Context, piece: Value) -> None:
         feedforward = self._fed_forward(context)
@@ -213,6 +208,10 @@ class PdActuatorBank(LeafSystem):
                 if self._law == "semi_implicit":
                     tau += damping
         output.SetFromVector(tau)
+
+    def held_states(self, times: Array, *samples: Array) -> Array:
+        """The output held_desired_state at many times (k,), from the inputs desired_state to previous_time, a row each."""
+        return np.array([_piece_of(*sample).at(t) for t, *sample in zip(times, *samples, strict=True)])
 
     def felt_torque(self, net_actuation: Array, state: Array | None) -> Array:
         """The output torque, of one time or of many, shape (..., n); only a semi-implicit one needs the state."""
@@ -300,6 +299,15 @@ class PdActuatorBank(LeafSystem):
     def get_saturated_output_port(self) -> OutputPort:
         """Output saturated."""
         return self._saturated_output
+
+
+def _piece_of(
+    desired: Array, time: Array, previous: Array | None = None, previous_time: Array | None = None
+) -> HermitePiece:
+    """What leads from the sample before to a sample; without one before, what goes on from it."""
+    if previous is None or previous_time is None:
+        previous, previous_time = desired, time
+    return HermitePiece.between(previous_time[0], previous, time[0], desired)
 
 
 def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> None:
