@@ -22,7 +22,7 @@ START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
 
 
-def make_balanced_walker(scenario: Scenario) -> Diagram:
+def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
@@ -38,6 +38,10 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         qp_status (3): see WholeBodyController.
         push (3): force of the pushes [N].
 
+    Args:
+        scenario: what is simulated.
+        visuals: whether there is anything to see; what nobody sees costs, too.
+
     Raises:
         ParameterError: the scenario's start cannot be reached, or it asks for what this walker cannot do.
     """
@@ -48,7 +52,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
             "simulation.integrator: discrete with actuators.law: semi_implicit or implicit; set both"
         )
     builder = DiagramBuilder()
-    human = add_human_plant(builder, scenario)
+    human = add_human_plant(builder, scenario, visuals)
     plant, model = human.plant, kinematics_plant(scenario.subject)
     stance = {
         f"{side}Leg{joint}Motion": times * START_FLEXION

@@ -26,7 +26,7 @@ from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 
 
-def make_walker(scenario: Scenario) -> Diagram:
+def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
@@ -55,11 +55,15 @@ def make_walker(scenario: Scenario) -> Diagram:
     Exported input:
         feedforward (42): torque added to every actuator's law [N m]; optional.
 
+    Args:
+        scenario: what is simulated.
+        visuals: whether there is anything to see; what nobody sees costs, too.
+
     Raises:
         ParameterError: the scenario's start, gait or recording cannot be followed, or its actuators would be unstable.
     """
     builder = DiagramBuilder()
-    human = add_human_plant(builder, scenario)
+    human = add_human_plant(builder, scenario, visuals)
     plant = human.plant
     bank = builder.AddNamedSystem(
         "actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law, human.effort_limits)

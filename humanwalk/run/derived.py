@@ -18,7 +18,9 @@ from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 Array = npt.NDArray[np.float64]
 
-TIME = "time_s"
+WHEN = "time"
+"""Stands for the times of the samples among what signals follow from."""
+
 SAMPLES = ("sample", "sample_time", "previous_sample", "previous_sample_time")
 """Ports with the samples that a PdActuatorBank follows, in the order in which it takes them; some walkers have two."""
 
@@ -29,7 +31,7 @@ class Derived:
 
     Attributes:
         ports: the ports' names.
-        needs: the signals that they follow from: names of other ports, recorded or derived before, or TIME.
+        needs: the signals that they follow from: names of other ports, recorded or derived before, or WHEN.
         calculate: from the records of these, shape (rows, size) each, times (rows,), to those of the ports.
     """
 
@@ -39,8 +41,10 @@ class Derived:
 
 
 def derived_signals(walker: Diagram) -> list[Derived]:
-    """What follows from other ports of a walker or playback."""
-    return [derived for system in walker.GetSystems() for derived in _of(system, walker)]
+    """What follows from other exported ports of a walker or playback, in an order in which it can be worked out."""
+    known = {walker.get_output_port(i).get_name() for i in range(walker.num_output_ports())} | {WHEN}
+    every = (derived for system in walker.GetSystems() for derived in _of(system, walker))
+    return [derived for derived in every if known.issuperset(derived.ports + derived.needs)]
 
 
 def _of(system: System, walker: Diagram) -> Iterator[Derived]:
@@ -49,17 +53,14 @@ def _of(system: System, walker: Diagram) -> Iterator[Derived]:
     elif isinstance(system, FootForceObserver):
         yield Derived(("friction_use",), ("foot_forces",), lambda forces: (_each(friction_used, forces),))
     elif isinstance(system, GaitSplineSource):
-        yield Derived(
-            ("phase", "contact_schedule"),
-            (TIME,),
-            lambda time: (_each(system.phases, time), _each(system.schedule, time)),
-        )
+        yield Derived(("phase",), (WHEN,), lambda time: (_each(system.phases, time),))
+        yield Derived(("contact_schedule",), (WHEN,), lambda time: (_each(system.schedule, time),))
     elif isinstance(system, CommandSource):
-        yield Derived(("command",), (TIME,), lambda time: (_each(system.command, time),))
+        yield Derived(("command",), (WHEN,), lambda time: (_each(system.command, time),))
     elif isinstance(system, PdActuatorBank):
         samples = [port for port in SAMPLES if walker.HasOutputPort(port)]
         if samples:
-            yield Derived(("desired_state",), (TIME, *samples), lambda *inputs: (system.held_states(*inputs),))
+            yield Derived(("desired_state",), (WHEN, *samples), lambda *inputs: (system.held_states(*inputs),))
         yield Derived(("torque",), ("net_actuation", "state"), lambda net, state: (system.felt_torque(net, state),))
         if system.law != "semi_implicit" or not system.limited:
             yield Derived(("saturated",), ("net_actuation",), lambda net: (system.at_limit(net),))

@@ -14,9 +14,11 @@ from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 from humanwalk.body import SIDES
 from humanwalk.control.joint_map import JointMap
 from humanwalk.quantity import ParameterError
-from humanwalk.run.derived import TIME, Derived, derived_signals
+from humanwalk.run.derived import WHEN, Derived, derived_signals
 
 Array = npt.NDArray[np.float64]
+
+TIME = "time_s"
 
 
 def _xyz(prefix: str, unit: str) -> list[str]:
@@ -104,7 +106,7 @@ class Recorder:
         """Record every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
         columns = {port: names for port, names in signal_columns(joints).items() if walker.HasOutputPort(port)}
         derived = derived_signals(walker)
-        known = {TIME, *(port for one in derived for port in one.ports)}
+        known = {WHEN, *(port for one in derived for port in one.ports)}
         asked = [port for port in columns if port not in known]
         needed = [port for one in derived for port in one.needs if port not in known]
         sinks = {
@@ -125,7 +127,7 @@ class Recorder:
                 {name: np.empty(0) for name in (TIME, *(n for names in self.columns.values() for n in names))}
             )
         time: Array = next(iter(logs.values())).sample_times()[:rows].copy()
-        record = {port: log.data()[:, :rows].T.copy() for port, log in logs.items()} | {TIME: time}
+        record = {port: log.data()[:, :rows].T.copy() for port, log in logs.items()} | {WHEN: time}
         for one in self.derived:
             record |= zip(one.ports, one.calculate(*(record[need] for need in one.needs)), strict=True)
         data: dict[str, Array] = {TIME: time}

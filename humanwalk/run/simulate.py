@@ -98,7 +98,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
         ParameterError: the scenario cannot be simulated, with a mend.
     """
     builder = DiagramBuilder()
-    walker = builder.AddNamedSystem("walker", make_diagram(scenario))
+    walker = builder.AddNamedSystem("walker", make_diagram(scenario, visuals=meshcat is not None))
     plant = walker.GetSubsystemByName("plant") if walker.HasSubsystemNamed("plant") else None
     assert plant is None or isinstance(plant, MultibodyPlant)
     recorder = None

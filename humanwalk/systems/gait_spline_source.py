@@ -5,6 +5,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from pydrake.common.value import Value
@@ -17,6 +18,8 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from humanwalk.body import SIDES, Side, Skeleton
 from humanwalk.gait.walking_gait import PELVIS_DEGREE, FootTarget, PelvisTarget, WalkingGait
+
+Array = npt.NDArray[np.float64]
 
 FOREVER = 1e6
 """Time at which the pelvis stops [s]; no simulation lasts that long."""
@@ -145,20 +148,19 @@ def _pelvis_reference(gait: WalkingGait, hip_height: float) -> PiecewisePolynomi
     """The output pelvis_reference as polynomials of time."""
     breaks = [0.0, *gait.pelvis_breaks, FOREVER]
 
-    def polynomials(begin: float, end: float) -> list[list[Polynomial]]:
-        # Two unknowns where it walks on and on, at times that do not cancel each other.
+    def polynomials(begin: float, end: float) -> npt.NDArray[np.object_]:
         degree, end = (1, begin + 1.0) if end == FOREVER else (PELVIS_DEGREE, end)
 
         def fitted(value: Callable[[PelvisTarget], float]) -> Power:
-            fit = Chebyshev.interpolate(
-                lambda s: np.array([value(gait.pelvis(begin + t)) for t in s]), degree, (0.0, end - begin)
-            )
-            power: Power = fit.convert(kind=Power)
+            def values(since: Array) -> Array:
+                return np.array([value(gait.pelvis(begin + s)) for s in since])
+
+            power: Power = Chebyshev.interpolate(values, degree, (0.0, end - begin)).convert(kind=Power)
             return power
 
         x, z = fitted(lambda pelvis: pelvis.distance), fitted(lambda pelvis: hip_height - pelvis.drop)
         zero, one = Power([0.0]), Power([1.0])
         rows = (one, zero, zero, zero, x, zero, z, zero, zero, zero, x.deriv(), zero, z.deriv())
-        return [[Polynomial(row.coef)] for row in rows]
+        return np.array([[Polynomial(row.coef.astype(np.float64))] for row in rows])
 
     return PiecewisePolynomial([polynomials(*piece) for piece in pairwise(breaks)], breaks)

@@ -37,7 +37,9 @@ class PdActuatorBank(LeafSystem):
 
     Desired states arrive as samples. From the sample before to the one after the present goes a cubic with their angles
     and rates; after the last sample the angles move on with their rates (a first-order hold). The bank does that
-    itself since the plant asks in every step, and every system that is asked costs. `PdLaw` says how the plant is given the law. The implicit law hands over the desired state; the others compute
+    itself since the plant asks in every step, and every system that is asked costs.
+
+    `PdLaw` says how the plant is given the law. The implicit law hands over the desired state; the others compute
     torques from the measured state, of which the semi-implicit one gives back kd v, the plant's damping taking it.
 
     A continuous plant (time_step 0, integrated by CENIC) takes the desired rates of its implicit law with the wrong
@@ -164,7 +166,9 @@ class PdActuatorBank(LeafSystem):
         if self._sample_time.HasValue(context):
             piece: HermitePiece = self._driving_piece.Eval(context)
             return piece.at(context.get_time())
-        return self._driving(self._desired.Eval(context)[None], self._fed_forward(context))[0]
+        desired: Array = self._desired.Eval(context)
+        now: Array = self._driving(desired[None], self._fed_forward(context))[0]
+        return now
 
     def _held(self, context: Context) -> Array:
         """Desired state of now."""
@@ -210,7 +214,7 @@ class PdActuatorBank(LeafSystem):
         output.SetFromVector(tau)
 
     def held_states(self, times: Array, *samples: Array) -> Array:
-        """The output held_desired_state at many times (k,), from the inputs desired_state to previous_time, a row each."""
+        """The output held_desired_state at many times (k,); samples: desired_state to previous_time, in rows."""
         return np.array([_piece_of(*sample).at(t) for t, *sample in zip(times, *samples, strict=True)])
 
     def felt_torque(self, net_actuation: Array, state: Array | None) -> Array:
