@@ -1,11 +1,12 @@
 """The balance that the thesis assumes: a spring-damper between the pelvis and its walking reference."""
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from pydrake.math import atan2, sqrt
+from pydrake.math import max as max_
 
 from humanwalk.control.stability import largest_stable_step
 from humanwalk.quantity import quantity
@@ -59,6 +60,8 @@ class BalanceSupportParameters:
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force [torque; force] on the pelvis at Po, in W, shape (6,) [N m, N].
 
+    All arrays may be of Drake's symbolic expressions.
+
     Args:
         q_WP: pose of the pelvis as Drake's floating base has it, [quaternion wxyz; position [m]], shape (7,); the
             quaternion may be a little off unit length, as Drake lets it drift.
@@ -67,29 +70,24 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
         parameters: stiffness and damping.
     """
     K, D = parameters.diagonals
-    error = np.empty(6)
-    error[:3] = _rotation_vector(q_WP[:4], reference[:4])
-    error[3:] = q_WP[4:] - reference[4:7]
+    error = np.array((*_rotation_vector(q_WP[:4], reference[:4]), *(q_WP[4:] - reference[4:7])))
     wrench: Array = -K * error - D * (V_WP - reference[7:])
     return wrench
 
 
 def _rotation_vector(wxyz: Array, wxyz_reference: Array) -> tuple[float, float, float]:
-    """Rotation vector [rad] in W that leads from the reference's orientation to the other one, the shorter way.
-
-    In plain floats: it is called at every step of the plant, and Drake's own types take five times as long to cross
-    into Python.
-    """
-    w, x, y, z = wxyz.tolist()
-    a, b, c, d = wxyz_reference.tolist()
+    """Rotation vector [rad] in W that leads from the reference's orientation to the other one, the shorter way."""
+    w, x, y, z = wxyz
+    a, b, c, d = wxyz_reference
     # The product of the one with the conjugate of the other.
-    scalar = w * a + x * b + y * c + z * d
+    cosine = w * a + x * b + y * c + z * d
     i = -w * b + x * a - y * d + z * c
     j = -w * c + x * d + y * a - z * b
     k = -w * d - x * c + y * b + z * a
-    sine = math.sqrt(i * i + j * j + k * k)
-    # A quaternion and its negative are one orientation. Near no rotation at all angle / sine goes to 2 / cosine.
-    scale = 2.0 * math.atan2(math.copysign(sine, scalar), abs(scalar)) / sine if sine > 1e-12 else 2.0 / scalar
+    # Near no rotation at all angle / sine goes to 2 / cosine.
+    sine = max_(sqrt(i * i + j * j + k * k), 1e-12)
+    # A quaternion and its negative are one orientation: both are multiplied by the cosine, which makes it positive.
+    scale = 2.0 * atan2(sine * cosine, cosine * cosine) / sine
     return scale * i, scale * j, scale * k
 
 

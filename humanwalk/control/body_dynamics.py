@@ -62,10 +62,11 @@ class FrameMotion:
             points: fixed to B, in B, shape (k, 3) [m].
             directions: the same at every point.
         """
-        moments = (points @ self.R_WB.T) @ directions.moments
-        J = (moments.reshape(-1, 3) @ self.J[:3]).reshape(len(points), len(directions.d_W), -1)
-        J += directions.d_W @ self.J[3:]
-        along: Array = J.reshape(-1, J.shape[-1])
+        # Of every point and direction the moment and the direction, which one product takes to the joints.
+        wrenches = np.empty((len(points), len(directions.d_W), 6))
+        wrenches[..., :3] = ((points @ self.R_WB.T) @ directions.moments).reshape(len(points), -1, 3)
+        wrenches[..., 3:] = directions.d_W
+        along: Array = wrenches.reshape(-1, 6) @ self.J
         return along
 
 

@@ -30,7 +30,7 @@ class FootForce:
     @property
     def vector(self) -> Array:
         """All of it in the order above, loaded as 1 or 0; shape (8,)."""
-        return np.array([*self.f_W, *self.p_WCop, self.free_moment, float(self.loaded)])
+        return np.concatenate((self.f_W, self.p_WCop, (self.free_moment, self.loaded)))
 
 
 def foot_force(f_W: Array, tau_Wo: Array, ground_height: float = 0.0) -> FootForce:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
-from scipy.linalg.lapack import dgesdd
+from scipy.linalg.lapack import dgesdd, dgesv
 
 from humanwalk.quantity import quantity
 
@@ -33,6 +33,10 @@ STATIONARY_GAIN = 1e-6
 
 RANK_FLOOR = 1e-9
 """Singular value of the weighted J [m/rad] up to which a motion of the joints leaves the sole alone."""
+
+WELL_CONDITIONED = 0.01
+"""Singular value of the weighted J [m/rad] above which J J' is inverted. The SVD that nearly straight legs need takes,
+in the middle of a simulation, ten times as long."""
 
 RESTART_GAIN = 0.5
 """Share of the residual below which the pose found by a second start replaces the first: less would not be worth
@@ -169,7 +173,10 @@ def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
     # One number after the other crosses from C++ into Python at a price; the matrices cross whole.
-    A, B = X.GetAsMatrix34(), X_desired.GetAsMatrix34()
+    return _pose_error(X.GetAsMatrix34(), X_desired.GetAsMatrix34())
+
+
+def _pose_error(A: Array, B: Array) -> Array:
     error = np.empty(6)
     error[:3] = _rotation_vector(A[:, :3] @ B[:, :3].T)
     error[3:] = A[:, 3] - B[:, 3]
@@ -227,19 +234,22 @@ def _iterate(
 ) -> tuple[InverseKinematicsSolution, float]:
     """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
     weight = parameters.row_weights
+    desired = X_PS_desired.GetAsMatrix34()
     theta = leg.within_range(theta_guess)
-    error = pose_error(leg.X_PS(theta), X_PS_desired)
+    error = _pose_error(leg.X_PS(theta).GetAsMatrix34(), desired)
     cost = _norm(weight * error)
     iterations, pull = 0, parameters.neutral_pull
     while _norm(error) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
         J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
         step = _newton_step(leg, theta, J, weight * error, parameters.damping * cost, pull)
-        step *= min(1.0, parameters.max_step / max(float(np.abs(step).max()), 1e-12))
+        longest = max(map(abs, step.tolist()))
+        if longest > parameters.max_step:
+            step *= parameters.max_step / longest
         # Shorten the step until it helps: far targets and joints at the end of their range bend the residual.
         for fraction in STEP_FRACTIONS:
             trial = leg.within_range(theta + fraction * step)
-            trial_error = pose_error(leg.X_PS(trial), X_PS_desired)
+            trial_error = _pose_error(leg.X_PS(trial).GetAsMatrix34(), desired)
             trial_cost = _norm(weight * trial_error)
             if trial_cost < cost:
                 break
@@ -258,7 +268,15 @@ def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, dampi
     """Step -J+ error - (1 - J+ J) pull theta of the joints that are free to move, J+ damped; shape (n,)."""
 
     def step_of(free: Indices | slice) -> Array:
-        U, s, Vt, _ = dgesdd(J[:, free])
+        Jf = J[:, free]
+        damped = _inverse_of_square(Jf, damping, WELL_CONDITIONED)
+        plain = _inverse_of_square(Jf, 0.0, WELL_CONDITIONED) if pull else damped
+        if damped is not None and plain is not None:
+            direct: Array = -Jf.T @ (damped @ error)
+            if pull:
+                direct -= pull * (theta[free] - Jf.T @ (plain @ (Jf @ theta[free])))
+            return direct
+        U, s, Vt, _ = dgesdd(Jf)
         # The tiny constant keeps a posture that is exactly singular from dividing by zero.
         along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
         spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
@@ -266,6 +284,21 @@ def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, dampi
         return step
 
     return _of_free_joints(leg, theta, step_of)
+
+
+def _inverse_of_square(J: Array, damping: float, least: float) -> Array | None:
+    """(J J' + damping^2)^-1, or None where J, so damped, may have a singular value of `least` or below."""
+    square = J @ J.T
+    square.flat[:: len(J) + 1] += damping * damping
+    *_, inverse, singular = dgesv(square, _IDENTITY)
+    if singular:
+        return None
+    # The inverse's Frobenius norm is no less than the inverse square of the least singular value.
+    entries = inverse.ravel(order="K")
+    return inverse if entries @ entries < least**-4 else None
+
+
+_IDENTITY = np.eye(6)
 
 
 def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices | slice], Array]) -> Array:
@@ -315,8 +348,12 @@ def joint_velocity(
     J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
 
     def velocity_of(free: Indices | slice) -> Array:
-        U, s, Vt, _ = dgesdd(J[:, free], full_matrices=0)
-        inverse = s / np.maximum(s, max(parameters.singular_value_floor, RANK_FLOOR)) ** 2
+        Jf, floor = J[:, free], max(parameters.singular_value_floor, RANK_FLOOR)
+        direct = _inverse_of_square(Jf, 0.0, max(floor, WELL_CONDITIONED))
+        if direct is not None:
+            return np.asarray(Jf.T @ (direct @ (weight * V_PS_desired)))
+        U, s, Vt, _ = dgesdd(Jf, full_matrices=0)
+        inverse = s / np.maximum(s, floor) ** 2
         velocity: Array = (Vt.T * inverse) @ (U.T @ (weight * V_PS_desired))
         return velocity
 

@@ -5,6 +5,7 @@ body the two differ from the shoulder girdle on.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -51,14 +52,18 @@ class JointMap:
             effort_limits=np.array([actuator.effort_limit() for actuator in actuators]),
         )
 
+    @cached_property
+    def _places_of_v(self) -> Indices:
+        return self.num_positions + self.v
+
     def positions(self, state: Array) -> Array:
-        """Joint angles [rad] out of a plant state [q; v] or out of q alone, shape (n,)."""
-        angles: Array = state[self.q]
+        """Joint angles [rad] out of a plant state [q; v] or out of q alone, shape (n,), or of many, (..., n)."""
+        angles: Array = state[..., self.q]
         return angles
 
     def velocities(self, state: Array) -> Array:
-        """Joint velocities [rad/s] out of a plant state [q; v], shape (n,)."""
-        rates: Array = state[self.num_positions + self.v]
+        """Joint velocities [rad/s] out of a plant state [q; v], shape (n,), or of many, (..., n)."""
+        rates: Array = state[..., self._places_of_v]
         return rates
 
 

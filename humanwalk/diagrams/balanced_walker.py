@@ -22,7 +22,7 @@ START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
 
 
-def make_balanced_walker(scenario: Scenario) -> Diagram:
+def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
@@ -30,12 +30,17 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
-        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
+        net_actuation (42), phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
     and its own:
+        feedforward (42), sample (84), sample_time (1): of the WholeBodyController, for the actuators.
         command (3): see CommandSource.
         balance (9): see GaitPlanner.
         qp_status (3): see WholeBodyController.
         push (3): force of the pushes [N].
+
+    Args:
+        scenario: what is simulated.
+        visuals: whether there is anything to see; what nobody sees costs, too.
 
     Raises:
         ParameterError: the scenario's start cannot be reached, or it asks for what this walker cannot do.
@@ -47,7 +52,7 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
             "simulation.integrator: discrete with actuators.law: semi_implicit or implicit; set both"
         )
     builder = DiagramBuilder()
-    human = add_human_plant(builder, scenario)
+    human = add_human_plant(builder, scenario, visuals)
     plant, model = human.plant, kinematics_plant(scenario.subject)
     stance = {
         f"{side}Leg{joint}Motion": times * START_FLEXION
@@ -94,6 +99,10 @@ def make_balanced_walker(scenario: Scenario) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
+        (plant.get_net_actuation_output_port(), "net_actuation"),
+        (controller.get_torque_output_port(), "feedforward"),
+        (controller.get_desired_state_output_port(), "sample"),
+        (controller.get_sample_time_output_port(), "sample_time"),
         (bank.get_held_desired_state_output_port(), "desired_state"),
         (planner.get_phase_output_port(), "phase"),
         (planner.get_contact_schedule_output_port(), "contact_schedule"),

@@ -58,8 +58,14 @@ class HumanPlant:
     effort_limits: Array
 
 
-def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
-    """Add the subject on level ground to a diagram, with gains installed and no contact set but the scenario's."""
+def add_human_plant(builder: DiagramBuilder, scenario: Scenario, visuals: bool = True) -> HumanPlant:
+    """Add the subject on level ground to a diagram, with gains installed and no contact set but the scenario's.
+
+    Args:
+        builder: of the diagram.
+        scenario: what is simulated.
+        visuals: whether there is anything to see of it; what nobody sees is still moved in every step.
+    """
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, scenario.simulation.time_step)
     instance = add_human(plant, scenario.subject)
     add_level_ground(plant, scenario.contact)
@@ -81,7 +87,17 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario) -> HumanPlant:
     exclude_unused_contact_sets(plant, scene_graph, scenario.contact)
     if legs_touch:
         let_legs_touch(plant, scene_graph)
+    if not visuals:
+        remove_visuals(plant, scene_graph)
     return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd, effort_limits)
+
+
+def remove_visuals(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
+    """Remove all geometry of a finalised plant that is only there to be seen."""
+    inspector = scene_graph.model_inspector()
+    for geometry in inspector.GetAllGeometryIds():
+        if inspector.GetProximityProperties(geometry) is None:
+            scene_graph.RemoveGeometry(plant.get_source_id(), geometry)
 
 
 def human_gains(scenario: Scenario) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from humanwalk.diagrams.start import require_reachable
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
+from humanwalk.systems.posture_interpolator import PostureInterpolator
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 
 
@@ -55,7 +56,12 @@ def make_playback(scenario: Scenario) -> Diagram:
         connect_soles(builder, reference.gait, solver)
         builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
         pelvis = reference.gait.get_pelvis_reference_output_port()
-        desired_state = reference.interpolator.get_desired_state_output_port()
+        interpolator = builder.AddNamedSystem("interpolator", PostureInterpolator(plant.num_actuators()))
+        builder.Connect(solver.get_previous_state_output_port(), interpolator.get_previous_state_input_port())
+        builder.Connect(solver.get_previous_time_output_port(), interpolator.get_previous_time_input_port())
+        builder.Connect(solver.get_desired_state_output_port(), interpolator.get_next_state_input_port())
+        builder.Connect(solver.get_sample_time_output_port(), interpolator.get_next_time_input_port())
+        desired_state = interpolator.get_desired_state_output_port()
         builder.ExportOutput(solver.get_status_output_port(), "ik_status")
     builder.Connect(pelvis, state.get_pelvis_reference_input_port())
     builder.Connect(desired_state, state.get_desired_state_input_port())

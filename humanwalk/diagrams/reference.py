@@ -14,7 +14,6 @@ from humanwalk.scenario import Scenario
 from humanwalk.systems.arm_swing_source import ArmSwingSource
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
-from humanwalk.systems.posture_interpolator import PostureInterpolator
 
 
 class SoleTargets(Protocol):
@@ -31,14 +30,13 @@ class SoleTargets(Protocol):
 class WalkingReference:
     """The systems of a walking reference, added to a diagram.
 
-    The inverse kinematics run one control period ahead and feed the interpolator; what they are fed with is still to
-    be connected.
+    The inverse kinematics run one control period ahead; what they are fed with is still to be connected, and so is
+    what goes from their last sample to the next.
     """
 
     gait: GaitSplineSource
     arms: ArmSwingSource
     inverse_kinematics: InverseKinematicsSolver
-    interpolator: PostureInterpolator
 
 
 def make_gait(scenario: Scenario) -> WalkingGait:
@@ -49,7 +47,7 @@ def make_gait(scenario: Scenario) -> WalkingGait:
 
 
 def add_walking_reference(builder: DiagramBuilder, scenario: Scenario) -> WalkingReference:
-    """Add the systems, named gait, arms, inverse_kinematics and interpolator."""
+    """Add the systems, named gait, arms and inverse_kinematics."""
     plant = kinematics_plant(scenario.subject)
     names = JointMap.of(plant).names
     gait, arms = make_gait(scenario), scenario.gait.arms
@@ -57,29 +55,16 @@ def add_walking_reference(builder: DiagramBuilder, scenario: Scenario) -> Walkin
     solver = InverseKinematicsSolver(
         plant, scenario.inverse_kinematics, period, period, start_posture=standing_posture(scenario)
     )
-    reference = WalkingReference(
+    return WalkingReference(
         gait=builder.AddNamedSystem("gait", GaitSplineSource(gait, scenario.subject.skeleton, period)),
         arms=builder.AddNamedSystem("arms", ArmSwingSource(names, gait, arms, preview=period)),
         inverse_kinematics=builder.AddNamedSystem("inverse_kinematics", solver),
-        interpolator=builder.AddNamedSystem("interpolator", PostureInterpolator(len(names))),
     )
-    connect_samples(builder, solver, reference.interpolator)
-    return reference
 
 
 def standing_posture(scenario: Scenario) -> dict[str, float]:
     """Joint angles [rad] by name of the gait at time zero, where they are not zero: legs straight, arms hanging."""
     return {name: target.angle for name, target in arm_targets(scenario.gait.arms, 0.0, 0.0, 0.0).items()}
-
-
-def connect_samples(
-    builder: DiagramBuilder, solver: InverseKinematicsSolver, interpolator: PostureInterpolator
-) -> None:
-    """Connect the solver's last two samples to the interpolator."""
-    builder.Connect(solver.get_previous_state_output_port(), interpolator.get_previous_state_input_port())
-    builder.Connect(solver.get_previous_time_output_port(), interpolator.get_previous_time_input_port())
-    builder.Connect(solver.get_desired_state_output_port(), interpolator.get_next_state_input_port())
-    builder.Connect(solver.get_sample_time_output_port(), interpolator.get_next_time_input_port())
 
 
 def connect_soles(builder: DiagramBuilder, targets: SoleTargets, solver: InverseKinematicsSolver) -> None:

@@ -26,22 +26,24 @@ from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 
 
-def make_walker(scenario: Scenario) -> Diagram:
+def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, interpolator, actuators, body_observer,
+    Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
     foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance. A
-    scenario that follows a recording has recording instead of gait, arms, inverse_kinematics and interpolator; one
-    with `contact: asperity` has foot_contact instead of foot_force_observer.
+    scenario that follows a recording has recording instead of gait, arms and inverse_kinematics; one with
+    `contact: asperity` has foot_contact instead of foot_force_observer.
 
     Exported outputs, joints in actuator order:
         state (97): plant state [q; v].
         query_object: SceneGraph's, for a visualiser.
         contact_results: the plant's.
+        net_actuation (42): the plant's [N m].
         torque (42): what every joint feels of its actuator [N m].
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
-        ik_status (6): see InverseKinematicsSolver; not with a recording.
+        ik_status (6), sample (84), sample_time (1), previous_sample (84), previous_sample_time (1): see
+            InverseKinematicsSolver; not with a recording.
         pelvis_reference (13): where the pelvis should be in W: quaternion, position, angular velocity, velocity.
         phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
@@ -53,11 +55,15 @@ def make_walker(scenario: Scenario) -> Diagram:
     Exported input:
         feedforward (42): torque added to every actuator's law [N m]; optional.
 
+    Args:
+        scenario: what is simulated.
+        visuals: whether there is anything to see; what nobody sees costs, too.
+
     Raises:
         ParameterError: the scenario's start, gait or recording cannot be followed, or its actuators would be unstable.
     """
     builder = DiagramBuilder()
-    human = add_human_plant(builder, scenario)
+    human = add_human_plant(builder, scenario, visuals)
     plant = human.plant
     bank = builder.AddNamedSystem(
         "actuators", PdActuatorBank(plant, human.kp, human.kd, scenario.actuators.law, human.effort_limits)
@@ -68,10 +74,9 @@ def make_walker(scenario: Scenario) -> Diagram:
     builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
 
     if scenario.follow.file:
-        reference = _add_recording(builder, scenario, human)
+        reference = _add_recording(builder, scenario, human, bank)
     else:
-        reference = _add_gait(builder, scenario, human, body, feet)
-    builder.Connect(reference.desired_state, bank.get_desired_state_input_port())
+        reference = _add_gait(builder, scenario, human, bank, body, feet)
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
@@ -100,7 +105,8 @@ def make_walker(scenario: Scenario) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.get_torque_output_port(), "torque"),
         (bank.get_saturated_output_port(), "saturated"),
-        (reference.desired_state, "desired_state"),
+        (plant.get_net_actuation_output_port(), "net_actuation"),
+        (bank.get_held_desired_state_output_port(), "desired_state"),
         (reference.pelvis, "pelvis_reference"),
         *((port, name) for name, port in reference.exports.items()),
         (body.get_soles_output_port(), "soles"),
@@ -116,23 +122,28 @@ def make_walker(scenario: Scenario) -> Diagram:
 
 @dataclass(frozen=True)
 class _Reference:
-    """Ports of what the walker is to do."""
+    """Ports of what the walker is to do, beside the joints' desired state."""
 
-    desired_state: OutputPort
     pelvis: OutputPort
     exports: dict[str, OutputPort]
 
 
-def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant) -> _Reference:
+def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
     """Add the recording that the scenario follows; the plant starts where it does."""
     motion = followed_motion(scenario)
     human.plant.SetDefaultPositions(start_positions(scenario, motion))
     source = builder.AddNamedSystem("recording", RecordedPostureSource(motion))
-    return _Reference(source.get_desired_state_output_port(), source.get_pelvis_reference_output_port(), {})
+    builder.Connect(source.get_desired_state_output_port(), bank.get_desired_state_input_port())
+    return _Reference(source.get_pelvis_reference_output_port(), {})
 
 
 def _add_gait(
-    builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, body: BodyObserver, feet: FootContact
+    builder: DiagramBuilder,
+    scenario: Scenario,
+    human: HumanPlant,
+    bank: PdActuatorBank,
+    body: BodyObserver,
+    feet: FootContact,
 ) -> _Reference:
     """Add gait, arms, inverse kinematics and the balance levels between them; the plant starts standing."""
     require_reachable(scenario)
@@ -166,9 +177,15 @@ def _add_gait(
         exports["alpha"] = level_2.get_alpha_output_port()
         posture = level_2.get_balanced_posture_output_port()
     builder.Connect(posture, solver.get_posture_input_port())
-    return _Reference(
-        walking.interpolator.get_desired_state_output_port(), gait.get_pelvis_reference_output_port(), exports
-    )
+    for name, sample, taken in (
+        ("sample", solver.get_desired_state_output_port(), bank.get_desired_state_input_port()),
+        ("sample_time", solver.get_sample_time_output_port(), bank.get_sample_time_input_port()),
+        ("previous_sample", solver.get_previous_state_output_port(), bank.get_previous_state_input_port()),
+        ("previous_sample_time", solver.get_previous_time_output_port(), bank.get_previous_time_input_port()),
+    ):
+        builder.Connect(sample, taken)
+        exports[name] = sample
+    return _Reference(gait.get_pelvis_reference_output_port(), exports)
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:

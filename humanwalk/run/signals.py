@@ -14,6 +14,7 @@ from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 from humanwalk.body import SIDES
 from humanwalk.control.joint_map import JointMap
 from humanwalk.quantity import ParameterError
+from humanwalk.run.derived import WHEN, Derived, derived_signals
 
 Array = npt.NDArray[np.float64]
 
@@ -88,21 +89,30 @@ def signal_columns(joints: JointMap) -> dict[str, list[str]]:
 
 @dataclass(frozen=True)
 class Recorder:
-    """Log sinks on the exported ports of a walker inside a root diagram."""
+    """What is recorded of a walker inside a root diagram.
+
+    Attributes:
+        sinks: log sinks on exported ports, by the port's name.
+        derived: what follows from these.
+        columns: names of the columns of every recorded port, sinks' and derived, in the order of the table.
+    """
 
     sinks: dict[str, VectorLogSink]
+    derived: list[Derived]
     columns: dict[str, list[str]]
 
     @staticmethod
     def add_to(builder: DiagramBuilder, walker: Diagram, joints: JointMap, period: float) -> "Recorder":
-        """Connect a sink to every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
-        columns = signal_columns(joints)
+        """Record every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
+        columns = {port: names for port, names in signal_columns(joints).items() if walker.HasOutputPort(port)}
+        derived = derived_signals(walker)
+        known = {WHEN, *(port for one in derived for port in one.ports)}
+        asked = [port for port in columns if port not in known]
+        needed = [port for one in derived for port in one.needs if port not in known]
         sinks = {
-            port: LogVectorOutput(walker.GetOutputPort(port), builder, period)
-            for port in columns
-            if walker.HasOutputPort(port)
+            port: LogVectorOutput(walker.GetOutputPort(port), builder, period) for port in dict.fromkeys(asked + needed)
         }
-        return Recorder(sinks, columns)
+        return Recorder(sinks, derived, columns)
 
     def table(self, context: Context) -> pa.Table:
         """Everything recorded so far; also after a simulation that ended early.
@@ -112,9 +122,17 @@ class Recorder:
         """
         logs = {port: sink.FindLog(context) for port, sink in self.sinks.items()}
         rows = min(log.num_samples() for log in logs.values())
-        data: dict[str, Array] = {TIME: next(iter(logs.values())).sample_times()[:rows].copy()}
-        for port, log in logs.items():
-            data |= zip(self.columns[port], log.data()[:, :rows].copy(), strict=True)
+        if rows == 0:
+            return pa.table(
+                {name: np.empty(0) for name in (TIME, *(n for names in self.columns.values() for n in names))}
+            )
+        time: Array = next(iter(logs.values())).sample_times()[:rows].copy()
+        record = {port: log.data()[:, :rows].T.copy() for port, log in logs.items()} | {WHEN: time}
+        for one in self.derived:
+            record |= zip(one.ports, one.calculate(*(record[need] for need in one.needs)), strict=True)
+        data: dict[str, Array] = {TIME: time}
+        for port, names in self.columns.items():
+            data |= zip(names, np.ascontiguousarray(record[port].T), strict=True)
         return pa.table(data)
 
 

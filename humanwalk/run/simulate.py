@@ -98,7 +98,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
         ParameterError: the scenario cannot be simulated, with a mend.
     """
     builder = DiagramBuilder()
-    walker = builder.AddNamedSystem("walker", make_diagram(scenario))
+    walker = builder.AddNamedSystem("walker", make_diagram(scenario, visuals=meshcat is not None))
     plant = walker.GetSubsystemByName("plant") if walker.HasSubsystemNamed("plant") else None
     assert plant is None or isinstance(plant, MultibodyPlant)
     recorder = None
@@ -164,11 +164,10 @@ def simulate(
             last_checkpoint = time.perf_counter()
 
     monitor = Monitor(prepared.watched, on_progress=look)
-    simulator.set_monitor(monitor)
     with monitor.stop_on_interrupt():
         try:
             simulator.Initialize()
-            simulator.AdvanceTo(scenario.duration)
+            monitor.advance(simulator, scenario.duration)
             end = monitor.reason or "completed"
         except ParameterError:
             raise

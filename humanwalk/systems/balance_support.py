@@ -1,17 +1,21 @@
-"""LeafSystem: the balance that the thesis assumes, made visible as a force on the pelvis."""
+"""Diagram: the balance that the thesis assumes, made visible as a force on the pelvis."""
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.symbolic import MakeVectorContinuousVariable
+from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
+from pydrake.systems.primitives import MatrixGain, Multiplexer, SymbolicVectorSystem
+from scipy.linalg import block_diag
 
 from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
 
 
-class BalanceSupport(LeafSystem):
+class BalanceSupport(Diagram):
     """A spatial spring-damper that holds the pelvis on the walking reference.
 
     It stands for the balance controller that the thesis assumes; a walk that needs it does not balance. Its wrench
-    is an output so that nobody takes it for balance.
+    is an output so that nobody takes it for balance. The plant asks for it in every step, so the law is handed to
+    Drake as an expression and no Python is run.
 
     Inputs:
         pelvis_reference: (13) where the pelvis should be in W, as Drake's floating base has it: quaternion wxyz,
@@ -27,43 +31,40 @@ class BalanceSupport(LeafSystem):
     def __init__(self, plant: MultibodyPlant, parameters: BalanceSupportParameters) -> None:
         """Make the support of a finalised plant whose floating base is the body `Pelvis`."""
         super().__init__()
-        self._parameters = parameters
         pelvis = plant.GetBodyByName("Pelvis")
-        self._q = slice(pelvis.floating_positions_start(), pelvis.floating_positions_start() + 7)
-        first_v = plant.num_positions() + pelvis.floating_velocities_start_in_v()
-        self._v = slice(first_v, first_v + 6)
-        self._base = slice(pelvis.floating_velocities_start_in_v(), pelvis.floating_velocities_start_in_v() + 6)
-        self._reference = self.DeclareVectorInputPort("pelvis_reference", 13)
-        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        inputs = {self.all_input_ports_ticket()}
-        self._wrench_output = self.DeclareVectorOutputPort("wrench", 6, self._calc_wrench, prerequisites_of_calc=inputs)
-        self._force_output = self.DeclareVectorOutputPort(
-            "generalized_force", plant.num_velocities(), self._calc_force, prerequisites_of_calc=inputs
-        )
-
-    def _calc_wrench(self, context: Context, output: BasicVector) -> None:
-        state = self._state.Eval(context)
-        output.SetFromVector(
-            support_wrench(state[self._q], state[self._v], self._reference.Eval(context), self._parameters)
-        )
-
-    def _calc_force(self, context: Context, output: BasicVector) -> None:
-        force = np.zeros(output.size())
-        force[self._base] = self._wrench_output.Eval(context)
-        output.SetFromVector(force)
+        first_q, first_v = pelvis.floating_positions_start(), pelvis.floating_velocities_start_in_v()
+        of_velocities = np.eye(plant.num_velocities())[first_v : first_v + 6]
+        of_state = block_diag(np.eye(plant.num_positions())[first_q : first_q + 7], of_velocities)
+        builder = DiagramBuilder()
+        pelvis_motion = builder.AddSystem(MatrixGain(of_state))
+        motions = builder.AddSystem(Multiplexer([13, 13]))
+        x = MakeVectorContinuousVariable(26, "x")
+        # Drake's expressions raise the processor's flag for numbers that are none, which NumPy would report.
+        with np.errstate(invalid="ignore"):
+            law = support_wrench(x[13:20], x[20:], x[:13], parameters)
+        wrench = builder.AddSystem(SymbolicVectorSystem(input=x, output=law))
+        force = builder.AddSystem(MatrixGain(of_velocities.T))
+        builder.Connect(pelvis_motion.get_output_port(), motions.get_input_port(1))
+        builder.Connect(motions.get_output_port(), wrench.get_input_port())
+        builder.Connect(wrench.get_output_port(), force.get_input_port())
+        builder.ExportInput(motions.get_input_port(0), "pelvis_reference")
+        builder.ExportInput(pelvis_motion.get_input_port(), "state")
+        builder.ExportOutput(wrench.get_output_port(), "wrench")
+        builder.ExportOutput(force.get_output_port(), "generalized_force")
+        builder.BuildInto(self)
 
     def get_pelvis_reference_input_port(self) -> InputPort:
         """Input pelvis_reference."""
-        return self._reference
+        return self.GetInputPort("pelvis_reference")
 
     def get_state_input_port(self) -> InputPort:
         """Input state."""
-        return self._state
+        return self.GetInputPort("state")
 
     def get_wrench_output_port(self) -> OutputPort:
         """Output wrench."""
-        return self._wrench_output
+        return self.GetOutputPort("wrench")
 
     def get_generalized_force_output_port(self) -> OutputPort:
         """Output generalized_force."""
-        return self._force_output
+        return self.GetOutputPort("generalized_force")

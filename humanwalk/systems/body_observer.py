@@ -1,11 +1,14 @@
 """LeafSystem: where the feet and the centre of mass are."""
 
 import numpy as np
+import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
 from humanwalk.body import SIDES
+
+Array = npt.NDArray[np.float64]
 
 
 class BodyObserver(LeafSystem):
@@ -36,15 +39,25 @@ class BodyObserver(LeafSystem):
         self._soles_output = self.DeclareVectorOutputPort("soles", 6, self._calc_soles, prerequisites_of_calc=needs)
         self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
 
-    def _calc_motion(self, context: Context, motion: Value) -> None:
+    def motions(self, states: Array) -> tuple[Array, Array]:
+        """Both outputs at many states, a row each; not a number where the state is none."""
+        soles, com = np.full((len(states), 6), np.nan), np.full((len(states), 6), np.nan)
+        for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
+            soles[row], com[row] = self._motion_at(states[row])
+        return soles, com
+
+    def _motion_at(self, state: Array) -> tuple[Array, Array]:
         plant, body = self._plant, self._plant_context
-        plant.SetPositionsAndVelocities(body, self._state.Eval(context))
+        plant.SetPositionsAndVelocities(body, state)
         soles = [frame.CalcPoseInWorld(body).translation() for frame in self._sole_frames]
         com = (
             plant.CalcCenterOfMassPositionInWorld(body),
             plant.CalcCenterOfMassTranslationalVelocityInWorld(body),
         )
-        motion.set_value((np.concatenate(soles), np.concatenate(com)))
+        return np.concatenate(soles), np.concatenate(com)
+
+    def _calc_motion(self, context: Context, motion: Value) -> None:
+        motion.set_value(self._motion_at(self._state.Eval(context)))
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._motion.Eval(context)[0])

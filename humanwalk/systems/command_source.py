@@ -20,8 +20,12 @@ class CommandSource(LeafSystem):
         )
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        command = self._profile.at(context.get_time())
-        output.SetFromVector([command.forward, command.sideways, command.turn])
+        output.SetFromVector(self.command(context.get_time()))
+
+    def command(self, time: float) -> list[float]:
+        """The output at a time [s]."""
+        command = self._profile.at(time)
+        return [command.forward, command.sideways, command.turn]
 
     def get_command_output_port(self) -> OutputPort:
         """Output command."""

@@ -1,10 +1,13 @@
 """LeafSystem: ground reaction force and centre of pressure of each foot."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.geometry import SceneGraphInspector
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
+from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
 
 from humanwalk.body import SIDES
@@ -31,7 +34,7 @@ class FootForceObserver(LeafSystem):
     def __init__(self, plant: MultibodyPlant, inspector: SceneGraphInspector) -> None:
         """Make the observer of a finalised plant; `inspector` tells which body a contact surface belongs to."""
         super().__init__()
-        self._world = plant.world_body().index()
+        self._world = int(plant.world_body().index())
         self._side_of_body = {
             int(plant.GetBodyByName(name).index()): place
             for place, side in enumerate(SIDES)
@@ -58,49 +61,37 @@ class FootForceObserver(LeafSystem):
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         results = self._contacts.Eval(context)
-        f_W, tau_Wo = np.zeros((2, 3)), np.zeros((2, 3))
-        # Of every contact with the ground, by foot: point of action and force on the foot.
-        points: tuple[list[Array], ...] = ([], [])
-        forces: tuple[list[Array], ...] = ([], [])
+        # Of each foot, moment about the world's origin and force; in plain floats, which are quicker for so few.
+        wrenches = [[0.0] * 6, [0.0] * 6]
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
             found = self._foot(pair.bodyA_index(), pair.bodyB_index())
             if found is not None:
                 foot, sign = found
-                points[foot].append(pair.contact_point())
-                forces[foot].append(sign * pair.contact_force())
+                _add(wrenches[foot], sign, pair.contact_point().tolist(), pair.contact_force().tolist())
         for i in range(results.num_hydroelastic_contacts()):
             info = results.hydroelastic_contact_info(i)
-            surface = info.contact_surface()
+            surface, F_Ac_W = info.contact_surface(), info.F_Ac_W()
             # The force is that on M, the first body here.
             found = self._foot(*(self._body_of_geometry[id] for id in (surface.id_N(), surface.id_M())))
             if found is not None:
                 foot, sign = found
-                points[foot].append(surface.centroid())
-                forces[foot].append(sign * info.F_Ac_W().translational())
-                tau_Wo[foot] += sign * info.F_Ac_W().rotational()
-        for foot in range(2):
-            if forces[foot]:
-                f = np.array(forces[foot])
-                f_W[foot] = f.sum(axis=0)
-                tau_Wo[foot] += _moments(np.array(points[foot]), f)
+                force, moment = F_Ac_W.translational().tolist(), F_Ac_W.rotational().tolist()
+                _add(wrenches[foot], sign, surface.centroid().tolist(), force, moment)
+        F_Wo = np.array(wrenches)
+        output.SetFromVector(np.concatenate([foot_force(F[3:], F[:3]).vector for F in F_Wo]))
 
-        output.SetFromVector(np.concatenate([foot_force(f_W[i], tau_Wo[i]).vector for i in range(2)]))
-
-    def _foot(self, body_A: int, body_B: int) -> tuple[int, float] | None:
+    def _foot(self, body_A: BodyIndex | int, body_B: BodyIndex | int) -> tuple[int, float] | None:
         """The foot that touches the ground, and the sign that makes a force on B one on the foot; None if none does."""
         # Either may be the ground; two legs against each other are not meant.
-        if body_A == self._world:
-            foot, sign = self._side_of_body.get(int(body_B)), 1.0
-        elif body_B == self._world:
-            foot, sign = self._side_of_body.get(int(body_A)), -1.0
-        else:
+        a, b = int(body_A), int(body_B)
+        if self._world not in (a, b):
             return None
+        foot, sign = self._side_of_body.get(a + b - self._world), 1.0 if a == self._world else -1.0
         return None if foot is None else (foot, sign)
 
     def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
-        feet = self._output.Eval(context).reshape(2, 8)
-        output.SetFromVector([friction_use(foot[:2], FRICTION * foot[2]) for foot in feet])
+        output.SetFromVector(friction_used(self._output.Eval(context)))
 
     def get_contact_results_input_port(self) -> InputPort:
         """Input contact_results."""
@@ -115,7 +106,16 @@ class FootForceObserver(LeafSystem):
         return self._friction_use_output
 
 
-def _moments(points: Array, forces: Array) -> Array:
-    """Sum of the cross products of rows, shape (3,); numpy's own cross takes many times as long."""
-    S = points.T @ forces
-    return np.array([S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]])
+def friction_used(foot_forces: Array) -> list[float]:
+    """Output friction_use (2) from the other output (16)."""
+    return [friction_use(foot[:2], FRICTION * foot[2]) for foot in foot_forces.reshape(2, 8)]
+
+
+def _add(wrench: list[float], sign: float, p: list[float], f: list[float], moment: Sequence[float] = (0, 0, 0)) -> None:
+    """Add a force f at p, and a moment, to a wrench about the origin."""
+    wrench[0] += sign * (p[1] * f[2] - p[2] * f[1] + moment[0])
+    wrench[1] += sign * (p[2] * f[0] - p[0] * f[2] + moment[1])
+    wrench[2] += sign * (p[0] * f[1] - p[1] * f[0] + moment[2])
+    wrench[3] += sign * f[0]
+    wrench[4] += sign * f[1]
+    wrench[5] += sign * f[2]

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import (
-    BasicVector,
     Context,
     EventStatus,
     InputPort,
@@ -83,25 +83,20 @@ class GaitPlanner(LeafSystem):
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
         self._memory = self.DeclareAbstractState(Value(Plan()))
-        needs = {self.abstract_state_ticket(self._memory)}
-        self._plan_output = self.DeclareAbstractOutputPort(
-            "plan", lambda: Value(Plan()), self._calc_plan, prerequisites_of_calc=needs
-        )
-        self._phase_output = self.DeclareVectorOutputPort("phase", 2, self._calc_phase, prerequisites_of_calc=needs)
-        self._schedule_output = self.DeclareVectorOutputPort(
-            "contact_schedule", 2, self._calc_schedule, prerequisites_of_calc=needs
-        )
-        self._balance_output = self.DeclareVectorOutputPort(
-            "balance", 9, self._calc_balance, prerequisites_of_calc=needs
-        )
+        phase = self.DeclareDiscreteState(2)
+        schedule = self.DeclareDiscreteState(np.ones(2))
+        balance = self.DeclareDiscreteState(9)
+        self._shown = (phase, schedule, balance)
+        self._plan_output = self.DeclareStateOutputPort("plan", self._memory)
+        self._phase_output = self.DeclareStateOutputPort("phase", phase)
+        self._schedule_output = self.DeclareStateOutputPort("contact_schedule", schedule)
+        self._balance_output = self.DeclareStateOutputPort("balance", balance)
         self.DeclareInitializationUnrestrictedUpdateEvent(self._start)
         self.DeclarePeriodicUnrestrictedUpdateEvent(period, 0.0, self._plan)
 
     def _start(self, context: Context, state: State) -> EventStatus:
         body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), dict.fromkeys(SIDES, 0.0))
-        plan = Plan(*self._planner.update(self._planner.start(body), body, Command()))
-        state.get_mutable_abstract_state(int(self._memory)).set_value(plan)
-        return EventStatus.Succeeded()
+        return self._remember(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
         forces = self._foot_forces.Eval(context)
@@ -110,40 +105,23 @@ class GaitPlanner(LeafSystem):
             context.get_time(),
             {side: float(forces[8 * place + 2]) for place, side in enumerate(SIDES)},
         )
-        remembered = self._plan_in(context).state
+        remembered = context.get_abstract_state(int(self._memory)).get_value().state
         assert remembered is not None
-        plan = Plan(*self._planner.update(remembered, body, Command(*self._command.Eval(context))))
-        state.get_mutable_abstract_state(int(self._memory)).set_value(plan)
+        return self._remember(state, *self._planner.update(remembered, body, Command(*self._command.Eval(context))))
+
+    def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
+        state.get_mutable_abstract_state(int(self._memory)).set_value(Plan(planned, reference))
+        shown = (self._phases(planned, reference), _schedule(reference), _balance(reference))
+        for group, values in zip(self._shown, shown, strict=True):
+            state.get_mutable_discrete_state(group).SetFromVector(values)
         return EventStatus.Succeeded()
 
-    def _plan_in(self, context: Context) -> Plan:
-        plan: Plan = context.get_abstract_state(int(self._memory)).get_value()
-        return plan
-
-    def _calc_plan(self, context: Context, output: Value) -> None:
-        output.set_value(self._plan_in(context))
-
-    def _calc_phase(self, context: Context, output: BasicVector) -> None:
-        plan = self._plan_in(context)
+    def _phases(self, planned: PlannerState, reference: WalkingReference) -> list[float]:
         phases = dict.fromkeys(SIDES, 0.0)
-        if plan.state and plan.reference and plan.reference.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
-            share = min(0.5 * plan.reference.phase_time / self._step_duration, 0.5)
-            phases = {plan.state.stance: share, other(plan.state.stance): share + 0.5}
-        output.SetFromVector([phases[side] for side in SIDES])
-
-    def _calc_schedule(self, context: Context, output: BasicVector) -> None:
-        reference = self._plan_in(context).reference
-        output.SetFromVector(
-            [float(reference is None or reference.foot(side).task is not FootTask.SWING) for side in SIDES]
-        )
-
-    def _calc_balance(self, context: Context, output: BasicVector) -> None:
-        reference = self._plan_in(context).reference
-        if reference is None:
-            output.SetZero()
-            return
-        points = (reference.zmp, reference.dcm, reference.dcm_reference, reference.foothold)
-        output.SetFromVector([x for point in points for x in (point.real, point.imag)] + [reference.phase.value])
+        if reference.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
+            share = min(0.5 * reference.phase_time / self._step_duration, 0.5)
+            phases = {planned.stance: share, other(planned.stance): share + 0.5}
+        return [phases[side] for side in SIDES]
 
     def get_state_input_port(self) -> InputPort:
         """Input state."""
@@ -172,3 +150,12 @@ class GaitPlanner(LeafSystem):
     def get_balance_output_port(self) -> OutputPort:
         """Output balance."""
         return self._balance_output
+
+
+def _schedule(reference: WalkingReference) -> list[float]:
+    return [float(reference.foot(side).task is not FootTask.SWING) for side in SIDES]
+
+
+def _balance(reference: WalkingReference) -> list[float]:
+    points = (reference.zmp, reference.dcm, reference.dcm_reference, reference.foothold)
+    return [*(x for point in points for x in (point.real, point.imag)), reference.phase.value]

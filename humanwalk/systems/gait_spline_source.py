@@ -1,23 +1,39 @@
-"""LeafSystem: where both soles and the pelvis should be, from the gait's splines."""
+"""Diagram: where both soles and the pelvis should be, from the gait's splines."""
 
+from collections.abc import Callable
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import Chebyshev
+from numpy.polynomial import Polynomial as Power
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.math import SpatialVelocity
-from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
+from pydrake.polynomial import Polynomial
+from pydrake.systems.framework import BasicVector, Context, Diagram, DiagramBuilder, LeafSystem, OutputPort
+from pydrake.systems.primitives import TrajectorySource
+from pydrake.trajectories import PiecewisePolynomial
 
 from humanwalk.body import SIDES, Side, Skeleton
-from humanwalk.gait.walking_gait import FootTarget, WalkingGait
+from humanwalk.gait.walking_gait import PELVIS_DEGREE, FootTarget, PelvisTarget, WalkingGait
+
+Array = npt.NDArray[np.float64]
+
+FOREVER = 1e6
+"""Time at which the pelvis stops [s]; no simulation lasts that long."""
 
 
 def _sole_velocity(foot: FootTarget) -> SpatialVelocity:
     return SpatialVelocity(np.array([0.0, foot.pitch_rate, 0.0]), foot.velocity)
 
 
-class GaitSplineSource(LeafSystem):
+class GaitSplineSource(Diagram):
     """The walking reference as a function of time; it has no input.
+
+    The plant asks for the pelvis in every step, so it is one of Drake's own sources of polynomials; the soles are
+    asked for by the inverse kinematics only.
 
     The soles' targets are those of the time `preview` from now, everything else is of now.
 
@@ -35,31 +51,68 @@ class GaitSplineSource(LeafSystem):
         """Make the source of a gait for a body whose pelvis frame is at hip height, `preview` [s] ahead."""
         super().__init__()
         self._gait = gait
+        builder = DiagramBuilder()
+        pelvis = builder.AddNamedSystem("pelvis", TrajectorySource(_pelvis_reference(gait, skeleton.hip_height)))
+        feet = builder.AddNamedSystem("feet", GaitFeetSource(gait, skeleton, preview))
+        builder.ExportOutput(pelvis.get_output_port(), "pelvis_reference")
+        for i in range(feet.num_output_ports()):
+            builder.ExportOutput(feet.get_output_port(i), feet.get_output_port(i).get_name())
+        builder.BuildInto(self)
+
+    def phases(self, time: float) -> list[float]:
+        """The output phase at a time [s]."""
+        return _phases(self._gait, time)
+
+    def schedule(self, time: float) -> list[float]:
+        """The output contact_schedule at a time [s]."""
+        return _schedule(self._gait, time)
+
+    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
+        """Output X_PRs or X_PLs."""
+        return self.GetOutputPort(f"X_P{side[0]}s")
+
+    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
+        """Output V_PRs or V_PLs."""
+        return self.GetOutputPort(f"V_P{side[0]}s")
+
+    def get_pelvis_reference_output_port(self) -> OutputPort:
+        """Output pelvis_reference."""
+        return self.GetOutputPort("pelvis_reference")
+
+    def get_phase_output_port(self) -> OutputPort:
+        """Output phase."""
+        return self.GetOutputPort("phase")
+
+    def get_contact_schedule_output_port(self) -> OutputPort:
+        """Output contact_schedule."""
+        return self.GetOutputPort("contact_schedule")
+
+
+class GaitFeetSource(LeafSystem):
+    """All outputs of a GaitSplineSource but the pelvis'."""
+
+    def __init__(self, gait: WalkingGait, skeleton: Skeleton, preview: float = 0.0) -> None:
+        super().__init__()
+        self._gait = gait
         self._preview = preview
         # Pose and velocity of a foot are asked for one after the other.
         self._foot_at = lru_cache(maxsize=4)(gait.foot)
         self._hip_height = skeleton.hip_height
-        self._X, self._V = {}, {}
         for side in SIDES:
-            self._X[side] = self.DeclareAbstractOutputPort(
+            self.DeclareAbstractOutputPort(
                 f"X_P{side[0]}s",
                 lambda: Value(RigidTransform()),
                 lambda context, output, side=side: output.set_value(self._sole_pose(self._foot(context, side))),
                 prerequisites_of_calc={self.time_ticket()},
             )
-            self._V[side] = self.DeclareAbstractOutputPort(
+            self.DeclareAbstractOutputPort(
                 f"V_P{side[0]}s",
                 lambda: Value(SpatialVelocity()),
                 lambda context, output, side=side: output.set_value(_sole_velocity(self._foot(context, side))),
                 prerequisites_of_calc={self.time_ticket()},
             )
-        self._pelvis_reference = self.DeclareVectorOutputPort(
-            "pelvis_reference", 13, self._calc_pelvis_reference, prerequisites_of_calc={self.time_ticket()}
-        )
-        self._phase = self.DeclareVectorOutputPort(
-            "phase", 2, self._calc_phase, prerequisites_of_calc={self.time_ticket()}
-        )
-        self._contact_schedule = self.DeclareVectorOutputPort(
+        self.DeclareVectorOutputPort("phase", 2, self._calc_phase, prerequisites_of_calc={self.time_ticket()})
+        self.DeclareVectorOutputPort(
             "contact_schedule",
             2,
             self._calc_contact_schedule,
@@ -76,36 +129,38 @@ class GaitSplineSource(LeafSystem):
             foot.position - np.array([0.0, 0.0, below_hips]),
         )
 
-    def _calc_pelvis_reference(self, context: Context, output: BasicVector) -> None:
-        pelvis = self._gait.pelvis(context.get_time())
-        reference = np.zeros(13)
-        reference[0] = 1.0
-        reference[4], reference[6] = pelvis.distance, self._hip_height - pelvis.drop
-        reference[10], reference[12] = pelvis.speed, -pelvis.drop_rate
-        output.SetFromVector(reference)
-
     def _calc_phase(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector([self._gait.phase(side, context.get_time()) for side in SIDES])
+        output.SetFromVector(_phases(self._gait, context.get_time()))
 
     def _calc_contact_schedule(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector([float(self._gait.in_stance(side, context.get_time())) for side in SIDES])
+        output.SetFromVector(_schedule(self._gait, context.get_time()))
 
-    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
-        """Output X_PRs or X_PLs."""
-        return self._X[side]
 
-    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
-        """Output V_PRs or V_PLs."""
-        return self._V[side]
+def _phases(gait: WalkingGait, time: float) -> list[float]:
+    return [gait.phase(side, time) for side in SIDES]
 
-    def get_pelvis_reference_output_port(self) -> OutputPort:
-        """Output pelvis_reference."""
-        return self._pelvis_reference
 
-    def get_phase_output_port(self) -> OutputPort:
-        """Output phase."""
-        return self._phase
+def _schedule(gait: WalkingGait, time: float) -> list[float]:
+    return [float(gait.in_stance(side, time)) for side in SIDES]
 
-    def get_contact_schedule_output_port(self) -> OutputPort:
-        """Output contact_schedule."""
-        return self._contact_schedule
+
+def _pelvis_reference(gait: WalkingGait, hip_height: float) -> PiecewisePolynomial:
+    """The output pelvis_reference as polynomials of time."""
+    breaks = [0.0, *gait.pelvis_breaks, FOREVER]
+
+    def polynomials(begin: float, end: float) -> npt.NDArray[np.object_]:
+        degree, end = (1, begin + 1.0) if end == FOREVER else (PELVIS_DEGREE, end)
+
+        def fitted(value: Callable[[PelvisTarget], float]) -> Power:
+            def values(since: Array) -> Array:
+                return np.array([value(gait.pelvis(begin + s)) for s in since])
+
+            power: Power = Chebyshev.interpolate(values, degree, (0.0, end - begin)).convert(kind=Power)
+            return power
+
+        x, z = fitted(lambda pelvis: pelvis.distance), fitted(lambda pelvis: hip_height - pelvis.drop)
+        zero, one = Power([0.0]), Power([1.0])
+        rows = (one, zero, zero, zero, x, zero, z, zero, zero, zero, x.deriv(), zero, z.deriv())
+        return np.array([[Polynomial(row.coef.astype(np.float64))] for row in rows])
+
+    return PiecewisePolynomial([polynomials(*piece) for piece in pairwise(breaks)], breaks)

@@ -115,7 +115,8 @@ class InverseKinematicsSolver(LeafSystem):
     def _solve_from(self, warm: Array, context: Context, discrete: DiscreteValues) -> EventStatus:
         desired, sample_time, status, *_ = self._groups
         if self._posture.HasValue(context):
-            q, v = np.split(self._posture.Eval(context), 2)
+            posture = self._posture.Eval(context)
+            q, v = posture[: self._n], posture[self._n :]
         else:
             q, v = np.zeros(self._n), np.zeros(self._n)
         report = np.empty(6)

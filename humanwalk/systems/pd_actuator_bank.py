@@ -2,10 +2,12 @@
 
 import numpy as np
 import numpy.typing as npt
+from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
+from humanwalk.control.hermite import HermitePiece
 from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
 from humanwalk.control.stability import round_down
@@ -33,7 +35,10 @@ def install_gains(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw = "imp
 class PdActuatorBank(LeafSystem):
     """tau = kp (q_d - q) + kd (v_d - v) + feedforward for each joint, in actuator order.
 
-    Desired angles arrive at the control rate; between samples they move on with their rate (a first-order hold).
+    Desired states arrive as samples. From the sample before to the one after the present goes a cubic with their angles
+    and rates; after the last sample the angles move on with their rates (a first-order hold). The bank does that
+    itself since the plant asks in every step, and every system that is asked costs.
+
     `PdLaw` says how the plant is given the law. The implicit law hands over the desired state; the others compute
     torques from the measured state, of which the semi-implicit one gives back kd v, the plant's damping taking it.
 
@@ -43,6 +48,7 @@ class PdActuatorBank(LeafSystem):
     Inputs:
         desired_state: (2n) desired angles [rad], then rates [rad/s].
         sample_time: (1) time of the desired state [s]. Optional: without it desired_state is taken as current.
+        previous_state, previous_time: the sample before. Optional: without it the desired state is held.
         state: plant state [q; v].
         net_actuation: (n) what the plant's actuators deliver [N m].
         feedforward: (n) torque added to the law [N m]. Optional: zero.
@@ -90,15 +96,25 @@ class PdActuatorBank(LeafSystem):
 
         self._desired = self.DeclareVectorInputPort("desired_state", 2 * n)
         self._sample_time = self.DeclareVectorInputPort("sample_time", 1)
+        self._previous = self.DeclareVectorInputPort("previous_state", 2 * n)
+        self._previous_time = self.DeclareVectorInputPort("previous_time", 1)
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._net_actuation = self.DeclareVectorInputPort("net_actuation", n)
         self._feedforward = self.DeclareVectorInputPort("feedforward", n)
 
-        hold = {
-            self.time_ticket(),
-            self.input_port_ticket(self._desired.get_index()),
-            self.input_port_ticket(self._sample_time.get_index()),
-        }
+        # Samples come more seldom than the plant asks.
+        samples = (self._desired, self._sample_time, self._previous, self._previous_time)
+        self._piece = self.DeclareCacheEntry(
+            "piece",
+            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_piece),
+            prerequisites_of_calc={self.input_port_ticket(port.get_index()) for port in samples},
+        )
+        self._driving_piece = self.DeclareCacheEntry(
+            "driving_piece",
+            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_driving_piece),
+            prerequisites_of_calc={self._piece.ticket(), self.input_port_ticket(self._feedforward.get_index())},
+        )
+        hold = {self.time_ticket(), self._piece.ticket()}
         self._held_output = self.DeclareVectorOutputPort(
             "held_desired_state", 2 * n, self._calc_held, prerequisites_of_calc=hold
         )
@@ -123,65 +139,122 @@ class PdActuatorBank(LeafSystem):
             "saturated", n, self._calc_saturated, prerequisites_of_calc=felt | needs
         )
 
-    def _held(self, context: Context, lead: float = 0.0) -> Array:
-        """Desired state `lead` seconds from now."""
-        desired: Array = self._desired.Eval(context)
+    def _calc_piece(self, context: Context, piece: Value) -> None:
+        samples = [self._desired.Eval(context), self._sample_time.Eval(context)]
+        if self._previous.HasValue(context):
+            samples += [self._previous.Eval(context), self._previous_time.Eval(context)]
+        piece.set_value(_piece_of(*samples))
+
+    def _calc_driving_piece(self, context: Context, piece: Value) -> None:
+        feedforward = self._fed_forward(context)
+        piece.set_value(self._piece.Eval(context).mapped(lambda rows: self._driving(rows, feedforward)))
+
+    def _driving(self, desired: Array, feedforward: Array | None) -> Array:
+        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state.
+
+        Args:
+            desired: (k, 2n) the desired state, or its coefficients of powers of time, the constant ones first.
+            feedforward: (n) if any.
+        """
+        n = self._kp.size
+        tau: Array = self._kp * desired[:, :n] + self._kd * desired[:, n:]
+        if feedforward is not None:
+            tau[0] += feedforward
+        return tau
+
+    def _driving_torque(self, context: Context) -> Array:
         if self._sample_time.HasValue(context):
-            lead += context.get_time() - self._sample_time.Eval(context)[0]
-        n = desired.size // 2
-        desired[:n] += lead * desired[n:]
+            piece: HermitePiece = self._driving_piece.Eval(context)
+            return piece.at(context.get_time())
+        desired: Array = self._desired.Eval(context)
+        now: Array = self._driving(desired[None], self._fed_forward(context))[0]
+        return now
+
+    def _held(self, context: Context) -> Array:
+        """Desired state of now."""
+        if self._sample_time.HasValue(context):
+            piece: HermitePiece = self._piece.Eval(context)
+            return piece.at(context.get_time())
+        desired: Array = self._desired.Eval(context)
         return desired
 
     def _calc_held(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._held(context))
 
     def _calc_plant_desired(self, context: Context, output: BasicVector) -> None:
-        desired = self._held(context, self._time_step)
-        if self._rates_as_torque:
-            desired[desired.size // 2 :] = 0.0
-        output.SetFromVector(desired)
-
-    def _law_torque(self, context: Context, state: Array) -> Array:
-        """The law from the measured state, feed-forward included, not yet clipped."""
         desired = self._held(context)
         n = self._kp.size
-        q, v = self._joints.positions(state), self._joints.velocities(state)
-        tau = pd_torque(q, v, desired[:n], desired[n:], self._kp, self._kd)
-        if self._feedforward.HasValue(context):
-            tau += self._feedforward.Eval(context)
-        return tau
+        desired[:n] += self._time_step * desired[n:]
+        if self._rates_as_torque:
+            desired[n:] = 0.0
+        output.SetFromVector(desired)
+
+    def _damping(self, state: Array) -> Array:
+        """kd v."""
+        damping: Array = self._kd * self._joints.velocities(state)
+        return damping
+
+    def _fed_forward(self, context: Context) -> Array | None:
+        return self._feedforward.Eval(context) if self._feedforward.HasValue(context) else None
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
         if self._law == "implicit":
-            n = output.size()
-            tau = self._feedforward.Eval(context) if self._feedforward.HasValue(context) else np.zeros(n)
+            feedforward = self._fed_forward(context)
+            tau = np.zeros(output.size()) if feedforward is None else feedforward
             if self._rates_as_torque:
-                tau += self._kd * self._held(context)[n:]
+                tau += self._kd * self._held(context)[self._kp.size :]
         else:
             state = self._state.Eval(context)
-            tau = self._law_torque(context, state)
-            if self._limited:
-                tau = np.clip(tau, -self._effort_limits, self._effort_limits)
-            if self._law == "semi_implicit":
-                tau += self._kd * self._joints.velocities(state)
+            tau = self._driving_torque(context) - self._kp * self._joints.positions(state)
+            if self._limited or self._law == "explicit":
+                damping, limits = self._damping(state), self._effort_limits
+                tau = np.minimum(np.maximum(tau - damping, -limits), limits)
+                if self._law == "semi_implicit":
+                    tau += damping
         output.SetFromVector(tau)
 
-    def _torque(self, context: Context) -> Array:
-        tau: Array = self._net_actuation.Eval(context)
-        if self._law == "semi_implicit":
-            tau -= self._kd * self._joints.velocities(self._state.Eval(context))
-        return tau
+    def held_states(self, times: Array, *samples: Array) -> Array:
+        """The output held_desired_state at many times (k,); samples: desired_state to previous_time, in rows."""
+        return np.array([_piece_of(*sample).at(t) for t, *sample in zip(times, *samples, strict=True)])
+
+    def felt_torque(self, net_actuation: Array, state: Array | None) -> Array:
+        """The output torque, of one time or of many, shape (..., n); only a semi-implicit one needs the state."""
+        if self._law != "semi_implicit":
+            return net_actuation
+        assert state is not None
+        return net_actuation - self._damping(state)
+
+    def at_limit(self, tau: Array) -> Array:
+        """1 where a torque is at its limit, else 0, shape (..., n)."""
+        return (np.abs(tau) >= (1 - 1e-9) * self._effort_limits).astype(float)
+
+    def law_torque(self, state: Array, desired: Array, feedforward: Array | None) -> Array:
+        """The law, not clipped, from the desired state of now; of one time or of many, shape (..., n)."""
+        q, v, n = self._joints.positions(state), self._joints.velocities(state), self._kp.size
+        tau = pd_torque(q, v, desired[..., :n], desired[..., n:], self._kp, self._kd)
+        return tau if feedforward is None else tau + feedforward
 
     def _calc_torque(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._torque(context))
+        state = self._state.Eval(context) if self._law == "semi_implicit" else None
+        output.SetFromVector(self.felt_torque(self._net_actuation.Eval(context), state))
 
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
         # What a semi-implicit joint feels stays a little off the limit: its damping is of the end of the step.
         if self._law == "semi_implicit":
-            tau = self._law_torque(context, self._state.Eval(context))
+            tau = self.law_torque(self._state.Eval(context), self._held(context), self._fed_forward(context))
         else:
-            tau = self._torque(context)
-        output.SetFromVector((np.abs(tau) >= (1 - 1e-9) * self._effort_limits).astype(float))
+            tau = self._net_actuation.Eval(context)
+        output.SetFromVector(self.at_limit(tau))
+
+    @property
+    def law(self) -> PdLaw:
+        """How the plant is given the law."""
+        return self._law
+
+    @property
+    def limited(self) -> bool:
+        """Whether any joint has an effort limit."""
+        return self._limited
 
     def get_desired_state_input_port(self) -> InputPort:
         """Input desired_state."""
@@ -190,6 +263,14 @@ class PdActuatorBank(LeafSystem):
     def get_sample_time_input_port(self) -> InputPort:
         """Input sample_time."""
         return self._sample_time
+
+    def get_previous_state_input_port(self) -> InputPort:
+        """Input previous_state."""
+        return self._previous
+
+    def get_previous_time_input_port(self) -> InputPort:
+        """Input previous_time."""
+        return self._previous_time
 
     def get_state_input_port(self) -> InputPort:
         """Input state."""
@@ -222,6 +303,15 @@ class PdActuatorBank(LeafSystem):
     def get_saturated_output_port(self) -> OutputPort:
         """Output saturated."""
         return self._saturated_output
+
+
+def _piece_of(
+    desired: Array, time: Array, previous: Array | None = None, previous_time: Array | None = None
+) -> HermitePiece:
+    """What leads from the sample before to a sample; without one before, what goes on from it."""
+    if previous is None or previous_time is None:
+        previous, previous_time = desired, time
+    return HermitePiece.between(previous_time[0], previous, time[0], desired)
 
 
 def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> None:

@@ -1,6 +1,7 @@
 """Inverse kinematics of a leg: what forward kinematics reaches is found again, what it does not is said."""
 
 import dataclasses
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
+from humanwalk.control import inverse_kinematics
 from humanwalk.control.inverse_kinematics import (
     InverseKinematicsParameters,
     joint_velocity,
@@ -321,3 +323,27 @@ def test_pose_error_does_not_jump_where_euler_angles_do():
     """Thesis Eq 4-3 subtracts Euler angles, which differ by 2 pi here (erratum E13)."""
     before, after = (RigidTransform(RotationMatrix.MakeZRotation(np.pi + e)) for e in (-0.01, 0.01))
     np.testing.assert_allclose(pose_error(after, before), [0, 0, 0.02, 0, 0, 0], atol=1e-9)
+
+
+@given(side=sides, shares=shares, error=st.tuples(*[st.floats(-0.1, 0.1)] * 6).map(np.array))
+@example(side="Right", shares=np.full(7, 0.5), error=np.full(6, 0.01))
+def test_where_the_leg_is_bent_the_quick_inverse_gives_what_the_svd_does(legs, side, shares, error):
+    """Newton steps and joint velocities without and with the quick way, which is made to refuse."""
+    leg = legs[side]
+    theta = within_range(leg, shares)
+    weight = DEFAULT.row_weights
+    J = weight[:, None] * leg.Jv_V_PS(theta)
+    quick = inverse_kinematics._newton_step(leg, theta, J, error, 0.01, 0.1), joint_velocity(leg, theta, error)
+    with mock.patch.object(inverse_kinematics, "_inverse_of_square", return_value=None):
+        exact = inverse_kinematics._newton_step(leg, theta, J, error, 0.01, 0.1), joint_velocity(leg, theta, error)
+    np.testing.assert_allclose(np.array(quick), np.array(exact), rtol=1e-7, atol=1e-9)
+
+
+def test_the_quick_inverse_is_of_bent_legs_alone(legs):
+    weight = DEFAULT.row_weights
+    for theta, bent in ((BENT, True), (STRAIGHT, False)):
+        J = weight[:, None] * legs["Right"].Jv_V_PS(theta)
+        inverse = inverse_kinematics._inverse_of_square(J, 0.0, inverse_kinematics.WELL_CONDITIONED)
+        assert (inverse is not None) == bent
+        if bent:
+            np.testing.assert_allclose(inverse @ (J @ J.T), np.eye(6), atol=1e-9)

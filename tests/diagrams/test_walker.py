@@ -9,6 +9,7 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 
 from humanwalk.body import HYDRO_SET, POINT_SET, SIDES
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.diagrams.choose import make_diagram
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, load_scenario
@@ -35,10 +36,15 @@ PORTS = {
     "state": 97,
     "query_object": 0,
     "contact_results": 0,
+    "net_actuation": N,
     "torque": N,
     "saturated": N,
     "desired_state": 2 * N,
     "ik_status": 6,
+    "sample": 2 * N,
+    "sample_time": 1,
+    "previous_sample": 2 * N,
+    "previous_sample_time": 1,
     "pelvis_reference": 13,
     "phase": 2,
     "contact_schedule": 2,
@@ -215,6 +221,20 @@ def test_contact_approximation_is_the_plants(approximation):
     walker = make_walker(thesis({"simulation.contact_approximation": approximation}))
     plant = walker.GetSubsystemByName("plant")
     assert plant.get_discrete_contact_approximation().name == f"k{approximation.capitalize()}"
+
+
+@pytest.mark.parametrize("controller", ["reference", "balanced"])
+def test_without_visuals_there_is_nothing_to_see_and_the_walk_is_the_same(controller):
+    states = []
+    for visuals in (True, False):
+        walker = make_diagram(load_scenario("walk" if controller == "balanced" else "thesis"), visuals=visuals)
+        inspector = walker.GetSubsystemByName("scene_graph").model_inspector()
+        seen = [g for g in inspector.GetAllGeometryIds() if inspector.GetIllustrationProperties(g) is not None]
+        assert bool(seen) == visuals
+        simulator = Simulator(walker)
+        simulator.AdvanceTo(0.05)
+        states.append(walker.GetOutputPort("state").Eval(simulator.get_context()))
+    np.testing.assert_array_equal(*states)
 
 
 @pytest.mark.parametrize(

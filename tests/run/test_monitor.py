@@ -73,6 +73,36 @@ def test_progress_is_told_at_every_look_and_no_more_often(falling_plant):
     assert monitor.reason == ""
 
 
+def test_it_advances_a_simulator_to_its_time_or_to_the_fall(falling_plant):
+    times = []
+    monitor = Monitor(falling_plant, on_progress=times.append)
+    simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
+    simulator.Initialize()
+    monitor.advance(simulator, 0.035)
+    assert simulator.get_context().get_time() == 0.035
+    np.testing.assert_allclose(times, [0.0, 0.01, 0.02, 0.03], atol=1e-12)
+    monitor.advance(simulator, 5.0)
+    assert monitor.reason == "fell"
+    expected = np.sqrt(2 * (1.0 - FALL_HEIGHT_SHARE) / GRAVITY)
+    assert simulator.get_context().get_time() == pytest.approx(expected, abs=2 * CHECK_PERIOD)
+    monitor.advance(simulator, 5.0)
+    assert simulator.get_context().get_time() < 1.0
+
+
+def test_looking_adds_no_steps(falling_plant):
+    """At the systems' own times to the last bit: another time, however near, would be another step."""
+    counts = []
+    for looks in (False, True):
+        simulator = Simulator(falling_plant, context_at(falling_plant, 2.0))
+        simulator.Initialize()
+        if looks:
+            Monitor(falling_plant).advance(simulator, 0.3)
+        else:
+            simulator.AdvanceTo(0.3)
+        counts.append(simulator.get_num_steps_taken())
+    assert counts[0] == counts[1]
+
+
 def test_interrupt_ends_the_simulation_at_the_next_look(falling_plant):
     monitor = Monitor(falling_plant)
     before = signal.getsignal(signal.SIGINT)

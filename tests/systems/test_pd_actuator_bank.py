@@ -11,6 +11,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.plant import Subject, add_human
+from humanwalk.control.hermite import HermitePiece
 from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import ActuatorParameters, joint_gains, pd_torque
 from humanwalk.quantity import ParameterError
@@ -79,6 +80,8 @@ def test_ports(implicit, explicit, discrete_plant):
     sizes = {
         "desired_state": 2 * N,
         "sample_time": 1,
+        "previous_state": 2 * N,
+        "previous_time": 1,
         "state": discrete_plant.num_multibody_states(),
         "net_actuation": N,
         "feedforward": N,
@@ -89,6 +92,8 @@ def test_ports(implicit, explicit, discrete_plant):
         } == sizes
         assert bank.get_desired_state_input_port().get_name() == "desired_state"
         assert bank.get_sample_time_input_port().get_name() == "sample_time"
+        assert bank.get_previous_state_input_port().get_name() == "previous_state"
+        assert bank.get_previous_time_input_port().get_name() == "previous_time"
         assert bank.get_state_input_port().get_name() == "state"
         assert bank.get_net_actuation_input_port().get_name() == "net_actuation"
         assert bank.get_feedforward_input_port().get_name() == "feedforward"
@@ -252,6 +257,38 @@ def test_between_samples_angles_move_on_with_their_rates(implicit, rng, age):
         np.testing.assert_allclose(held, np.concatenate((q + age * v, v)), atol=1e-12)
     led = implicit.get_plant_desired_state_output_port().Eval(context)
     np.testing.assert_allclose(led, np.concatenate((q + (age + 0.001) * v, v)), atol=1e-12)
+
+
+@given(rng=seeds, share=st.floats(-0.5, 1.5))
+def test_from_the_sample_before_to_the_next_goes_their_cubic(implicit, rng, share):
+    x0, x1 = rng.normal(size=(2, 2 * N))
+    samples = {"previous_state": x0, "previous_time": [1.0], "desired_state": x1, "sample_time": [1.01]}
+    context, t = context_with(implicit, **samples), 1.0 + 0.01 * share
+    context.SetTime(t)
+    expected = HermitePiece.between(1.0, x0, 1.01, x1).at(t)
+    np.testing.assert_array_equal(implicit.get_held_desired_state_output_port().Eval(context), expected)
+    inputs = (samples[name] for name in ("desired_state", "sample_time", "previous_state", "previous_time"))
+    rows = implicit.held_states(np.array([t]), *(np.array([value]) for value in inputs))
+    np.testing.assert_array_equal(rows, [expected])
+
+
+@given(rng=seeds, age=st.floats(-0.01, 0.02))
+def test_the_law_follows_the_desired_state_between_samples(explicit, plant, joints, gains, rng, age):
+    """Both with and without a sample before, and with a feed-forward that changes."""
+    kp, kd = gains
+    state, feedforward = 1e-4 * rng.normal(size=plant.num_multibody_states()), rng.normal(size=N)
+    samples = {"desired_state": 1e-4 * rng.normal(size=2 * N), "sample_time": [1.0]}
+    before = {"previous_state": 1e-4 * rng.normal(size=2 * N), "previous_time": [0.99]}
+    for given_samples in (samples, samples | before):
+        context = context_with(explicit, **given_samples, state=state, feedforward=feedforward)
+        context.SetTime(1.0 + age)
+        for _ in range(2):
+            held = explicit.get_held_desired_state_output_port().Eval(context)
+            law = pd_torque(joints.positions(state), joints.velocities(state), held[:N], held[N:], kp, kd) + feedforward
+            expected = np.clip(law, -joints.effort_limits, joints.effort_limits)
+            np.testing.assert_allclose(explicit.get_actuation_output_port().Eval(context), expected, atol=1e-9)
+            feedforward = 2.0 * feedforward
+            explicit.GetInputPort("feedforward").FixValue(context, feedforward)
 
 
 def test_without_sample_time_the_desired_state_is_current(implicit):

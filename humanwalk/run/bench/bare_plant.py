@@ -75,7 +75,7 @@ class BarePlant:
     def __init__(self, scenario: Scenario, record: PlantRecord) -> None:
         """Make the plant and put it where the record begins."""
         builder = DiagramBuilder()
-        self.plant = add_human_plant(builder, scenario).plant
+        self.plant = add_human_plant(builder, scenario, visuals=False).plant
         self.simulator = Simulator(builder.Build())
         self._context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
         self._record = record

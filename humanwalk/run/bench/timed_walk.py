@@ -17,7 +17,6 @@ class TimedWalk:
         """Make and initialise it, with or without recording."""
         self.prepared: Prepared = prepare(scenario, record=record)
         self._monitor = Monitor(self.prepared.watched)
-        self.prepared.simulator.set_monitor(self._monitor)
         self.prepared.simulator.Initialize()
 
     @property
@@ -32,4 +31,4 @@ class TimedWalk:
 
     def advance(self, until: float) -> Cost:
         """Go on to a simulated time [s], unless it has ended; returns the cost."""
-        return cost_of(lambda: None if self.ended else self.prepared.simulator.AdvanceTo(until))
+        return cost_of(lambda: self._monitor.advance(self.prepared.simulator, until))
