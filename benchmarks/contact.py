@@ -23,9 +23,9 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.asperity import AsperityParameters, friction_coefficient, friction_force, normal_force
 from humanwalk.control.contact_step import (
     ContactMemory,
+    ContactStep,
     body_jacobians,
     body_mobility,
-    contact_step,
 )
 from humanwalk.control.ground import PlaneGround
 from humanwalk.control.joint_map import JointMap
@@ -78,13 +78,13 @@ def evaluation() -> dict[str, Any]:
         f_n = normal_force(parameters, area, depth, rate)
         friction_force(parameters, area, stretch, velocity, friction_coefficient(parameters, f_n / area, 0.0) * f_n)
 
-    ground, memory = PlaneGround(), ContactMemory.fresh(p_WQ, V)
+    contact_step, memory = ContactStep(parameters, PlaneGround(), area, step), ContactMemory.fresh(p_WQ, V)
     for _ in range(20):
-        memory = contact_step(parameters, ground, area, p_WB, p_WQ, V, memory, G, step, 0.0).memory
+        memory = contact_step(p_WB, p_WQ, V, memory, G, 0.0).memory
     return {
         "points": int(area.size),
         "law": microseconds(law),
-        "step": microseconds(lambda: contact_step(parameters, ground, area, p_WB, p_WQ, V, memory, G, step, 0.0)),
+        "step": microseconds(lambda: contact_step(p_WB, p_WQ, V, memory, G, 0.0)),
     }
 
 

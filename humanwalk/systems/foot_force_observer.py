@@ -10,7 +10,7 @@ from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSyste
 from humanwalk.body import SIDES
 from humanwalk.body.contact import FRICTION
 from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.ground_force import foot_force, friction_use
+from humanwalk.control.ground_force import foot_force, friction_use, moments
 
 Array = npt.NDArray[np.float64]
 
@@ -83,7 +83,7 @@ class FootForceObserver(LeafSystem):
             if forces[foot]:
                 f = np.array(forces[foot])
                 f_W[foot] = f.sum(axis=0)
-                tau_Wo[foot] += _moments(np.array(points[foot]), f)
+                tau_Wo[foot] += moments(np.array(points[foot]), f)
 
         output.SetFromVector(np.concatenate([foot_force(f_W[i], tau_Wo[i]).vector for i in range(2)]))
 
@@ -113,9 +113,3 @@ class FootForceObserver(LeafSystem):
     def get_friction_use_output_port(self) -> OutputPort:
         """Output friction_use."""
         return self._friction_use_output
-
-
-def _moments(points: Array, forces: Array) -> Array:
-    """Sum of the cross products of rows, shape (3,); numpy's own cross takes many times as long."""
-    S = points.T @ forces
-    return np.array([S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]])
