@@ -37,7 +37,7 @@ HYDRO_RESOLUTION = 0.05
 
 SOLE_GRID = (2, 2)
 """Contact points along and across the lower face of each box that the asperity law acts on: its corners (our choice).
-The outermost points bound the centre of pressure, so they lie on the rim."""
+A finer grid carries less at its rim: it tilts far before the centre of pressure comes there (docs/contact.md)."""
 
 SPHERE_RADIUS = 0.012
 """Radius of the contact spheres of the reference human [m]."""

@@ -78,6 +78,7 @@ class AsperityContact(LeafSystem):
         self._joint_impedance = joint_impedance
         patches = [patch for foot in feet for patch in foot]
         self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
+        self._frames, self._world = [body.body_frame() for body in self._bodies], plant.world_frame()
         # The origin comes first, so that one call gives it and all points.
         self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
         area = np.array([patch.area for patch in patches])
@@ -125,14 +126,13 @@ class AsperityContact(LeafSystem):
         """Origins of the bodies (b, 3), their points (b, k, 3) and their velocities (b, 6) in W."""
         plant, inner = self._plant, self._plant_context
         plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        world = plant.world_frame()
         p_W = np.array(
             [
-                plant.CalcPointsPositions(inner, body.body_frame(), points, world).T
-                for body, points in zip(self._bodies, self._points, strict=True)
+                plant.CalcPointsPositions(inner, frame, points, self._world).T
+                for frame, points in zip(self._frames, self._points, strict=True)
             ]
         )
-        V = np.array([plant.EvalBodySpatialVelocityInWorld(inner, body).get_coeffs() for body in self._bodies])
+        V = np.array([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
         return p_W[:, 0], p_W[:, 1:], V
 
     def _calc_contacts(self, context: Context, output: Value) -> None:
