@@ -35,8 +35,9 @@ HYDRO_MODULUS = 2.0e7
 HYDRO_RESOLUTION = 0.05
 """Mesh resolution hint of the soles [m] (Drake ignores it for boxes)."""
 
-SOLE_GRID = (5, 5)
-"""Rectangles along and across the lower face of each box that the asperity law acts on (our choice)."""
+SOLE_GRID = (2, 2)
+"""Contact points along and across the lower face of each box that the asperity law acts on: its corners (our choice).
+A finer grid carries less at its rim: it tilts far before the centre of pressure comes there (docs/contact.md)."""
 
 SPHERE_RADIUS = 0.012
 """Radius of the contact spheres of the reference human [m]."""
@@ -94,12 +95,12 @@ class ContactBox:
 
 @dataclass(frozen=True)
 class SolePatch:
-    """A flat piece of one body's sole, cut into rectangles.
+    """A flat piece of one body's sole, shared out to contact points.
 
     Attributes:
         body: Body name.
-        p_BoQ_B: Middle of each rectangle [m], shape (k, 3).
-        area: Of each rectangle [m2], shape (k,).
+        p_BoQ_B: Contact points [m], shape (k, 3).
+        area: That belongs to each of them [m2], shape (k,).
     """
 
     body: str
@@ -150,7 +151,7 @@ def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
 
 
 def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
-    """The polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes, in rectangles."""
+    """The polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes."""
     return tuple(
         rectangle_patch(box.body, box.center, box.size, SOLE_GRID)
         for box in contact_boxes(skeleton)
@@ -159,21 +160,26 @@ def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
 
 
 def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, int]) -> SolePatch:
-    """The lower face of a box, cut into rectangles.
+    """The lower face of a box: a grid of points from rim to rim, each with the rectangle of the face around it.
 
     Args:
         body: that the box belongs to.
         center: of the box in the body frame [m].
         size: its edges along the body's x, y, z [m].
-        grid: how many rectangles along x and y.
+        grid: how many points along x and y, 2 or more.
     """
-    x, y = (
-        middle + edge * ((np.arange(n) + 0.5) / n - 0.5)
-        for middle, edge, n in zip(center[:2], size[:2], grid, strict=True)
+    (x, along), (y, across) = (
+        _rim_to_rim(middle, edge, n) for middle, edge, n in zip(center[:2], size[:2], grid, strict=True)
     )
     bottom = center[2] - 0.5 * size[2]
-    p_BoQ_B = np.array([(a, b, bottom) for a in x for b in y])
-    return SolePatch(body, p_BoQ_B, np.full(len(p_BoQ_B), size[0] * size[1] / len(p_BoQ_B)))
+    return SolePatch(body, np.array([(a, b, bottom) for a in x for b in y]), np.outer(along, across).ravel())
+
+
+def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """n points along an edge from end to end, and the length around each: at the ends, half of that between."""
+    length = np.full(n, edge / (n - 1))
+    length[[0, -1]] *= 0.5
+    return middle + edge * np.linspace(-0.5, 0.5, n), length
 
 
 def _in_body(skeleton: Skeleton, side: str, body: str, p_SoleP: Vector3) -> Vector3:

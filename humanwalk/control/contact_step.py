@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -31,7 +32,7 @@ from humanwalk.control.asperity import (
     share,
 )
 from humanwalk.control.ground import Ground
-from humanwalk.control.ground_force import friction_use
+from humanwalk.control.ground_force import friction_use, moments
 from humanwalk.control.stability import largest_stable_step
 
 Array = npt.NDArray[np.float64]
@@ -87,8 +88,7 @@ class Contacts:
     """All contacts at one time; of b bodies with k points each.
 
     Attributes:
-        normal: force on each point along the surface's normal [N], shape (b, k).
-        friction: force on each point along the surface [N], complex, shape (b, k).
+        force_S: force on each point along the axes of the surface [N], shape (b, k, 3).
         bound: mu f_n, what friction may reach [N], shape (b, k).
         depth: below the surface [m], negative above it; shape (b, k).
         X: Jacobians of the points, see `point_jacobians`.
@@ -98,8 +98,7 @@ class Contacts:
         memory: for the next step.
     """
 
-    normal: Array
-    friction: Complex
+    force_S: Array
     bound: Array
     depth: Array
     X: Array
@@ -111,21 +110,30 @@ class Contacts:
     @property
     def force(self) -> Array:
         """On each point, in W [N], shape (b, k, 3)."""
-        force: Array = np.vecmat(_components(self.friction, self.normal), self.R_SW)
+        force: Array = np.vecmat(self.force_S, self.R_SW)
         return force
+
+    @property
+    def normal(self) -> Array:
+        """Force on each point along the surface's normal [N], shape (b, k)."""
+        return self.force_S[..., 2]
+
+    @property
+    def friction(self) -> Complex:
+        """Force on each point along the surface [N], shape (b, k)."""
+        return _along(self.force_S)
 
     def total(self, bodies: slice) -> tuple[Array, Array]:
         """Force on some of the bodies [N] and its moment about the world's origin [N m], in W, shape (3,) each."""
-        tau, f = np.split(self.memory.F[bodies], 2, axis=1)
-        return f.sum(axis=0), (tau + np.cross(self.p_WB[bodies], f)).sum(axis=0)
+        F = self.memory.F[bodies]
+        f = F[:, 3:]
+        return f.sum(axis=0), F[:, :3].sum(axis=0) + moments(self.p_WB[bodies], f)
 
     def friction_use(self, bodies: slice) -> float:
         """Friction on some of the bodies as a share of the most that the ground could give; 0 without contact."""
-        friction = np.vecmat(
-            _components(self.friction[bodies]),
-            np.broadcast_to(self.R_SW, (*self.normal.shape, 3, 3))[bodies][..., :2, :],
-        )
-        return friction_use(friction.sum(axis=(0, 1)), float(self.bound[bodies].sum()))
+        along = self.force_S * (1.0, 1.0, 0.0)
+        friction = np.vecmat(along, self.R_SW)[bodies].sum(axis=(0, 1))
+        return friction_use(friction, float(self.bound[bodies].sum()))
 
     @property
     def stretch(self) -> Array:
@@ -135,93 +143,109 @@ class Contacts:
     @property
     def slip(self) -> Array:
         """Speed along the surface of the points that press on it [m/s], 0 for the others; shape (b, k)."""
-        return np.abs(_velocities(self.X, self.memory.V)[0]) * (self.normal > 0.0)
+        velocity = (self.X @ self.memory.V[..., None]).reshape(self.force_S.shape)
+        return np.abs(_along(velocity)) * (self.normal > 0.0)
+
+    def __deepcopy__(self, memo: object) -> Self:
+        """Itself: Drake copies abstract values often, and nothing in here ever changes."""
+        return self
 
 
-def contact_step(
-    parameters: AsperityParameters,
-    ground: Ground,
-    area: Array,
-    p_WB: Array,
-    p_WQ: Array,
-    V: Array,
-    memory: ContactMemory,
-    mobility: Array,
-    step: float,
-    time: float,
-) -> Contacts:
-    """The contacts of b bodies with k points each.
+class ContactStep:
+    """The contacts of b bodies with k points each over a step.
 
     Args:
         parameters: of the law.
         ground: the surface.
         area: of the points [m2], shape (b, k).
-        p_WB: origins of the bodies [m], shape (b, 3).
-        p_WQ: points [m], shape (b, k, 3).
-        V: velocities of the bodies at their origins, in W [rad/s, m/s], shape (b, 6).
-        memory: what the last step left.
-        mobility: G, in W at the origins, shape (6 b, 6 b); of zeros, the law is explicit.
         step: h [s].
-        time: [s].
     """
-    b, k = area.shape
-    height, R_SW = ground(p_WQ)
-    depth = -height
-    X = point_jacobians(p_WQ - p_WB[:, None], R_SW)
 
-    stretch, _ = _split(np.matvec(R_SW, p_WQ - memory.anchor))
-    blocks = step * mobility.reshape(6 * b, b, 6).swapaxes(0, 1)
+    def __init__(self, parameters: AsperityParameters, ground: Ground, area: Array, step: float) -> None:
+        self._parameters, self._ground, self._area, self._step = parameters, ground, area, step
+        p = parameters
+        # Of the law that sticks and presses, along the surface's axes: force at rest, and what a velocity adds.
+        self._stiffness = area[..., None] * (p.spring_stiffness, p.spring_stiffness, p.normal_stiffness)
+        damping = area[..., None] * (p.velocity_stiffness, p.velocity_stiffness, p.normal_damping)
+        self._impedance = damping + step * self._stiffness
+        # Written anew in every pass: allocating takes as long as adding.
+        b, k = area.shape
+        self._left, self._system = np.empty((b, k, 3)), np.zeros((b, 6, b, 6))
+        self._blocks = np.einsum("iaib->iab", self._system)
 
-    # Where everything would go without this step's contact, and which points would then press.
-    free = 2.0 * V - memory.V - step * (mobility @ memory.F.ravel()).reshape(b, 6)
-    _, rate = _velocities(X, free)
-    presses = normal_force(parameters, area, depth + step * rate, rate) != 0.0
-    grip = memory.grip
-    end = free.ravel()
-    for place in range(MOST_PASSES):
-        # The law's linearisation F0 - S v, for the points that are thought to press, with the grip that they had.
-        touching = area * presses
-        gripping = touching * grip
-        S = np.empty((b, k, 3))
-        S[..., :2] = (gripping * (parameters.velocity_stiffness + step * parameters.spring_stiffness))[..., None]
-        S[..., 2] = touching * (normal_damping(parameters, rate) + step * parameters.normal_stiffness)
-        f_t = -parameters.spring_stiffness * gripping * stretch
-        f_n = touching * (parameters.normal_pressure + parameters.normal_stiffness * depth)
-        system = (blocks @ (X.mT @ (S.reshape(b, 3 * k, 1) * X))).swapaxes(0, 1).reshape(6 * b, 6 * b)
-        system.flat[:: 6 * b + 1] += 1.0
-        solved = np.linalg.solve(system, free.ravel() + step * (mobility @ _wrenches(X, f_t, f_n).ravel()))
-        end = solved if place < WHOLE_PASSES else 0.5 * (end + solved)
+    def __call__(
+        self, p_WB: Array, p_WQ: Array, V: Array, memory: ContactMemory, mobility: Array, time: float
+    ) -> Contacts:
+        """The contacts at the end of the step.
 
-        # The law itself, there; once more if it finds other points pressing or sliding than was thought.
-        velocity, rate = _velocities(X, end.reshape(b, 6))
-        f_n = normal_force(parameters, area, depth + step * rate, rate)
-        load = parameters.averaging * memory.load + (1.0 - parameters.averaging) * f_n
-        # A load that falls faster than its mean must not leave more friction than mu times what is left of it.
-        bound = friction_coefficient(parameters, f_n / area, time) * np.maximum(0.0, np.minimum(load, f_n))
-        wanted = stretch + step * velocity
-        f_t, held = friction_force(parameters, area, wanted, velocity, bound)
-        linear = area * np.abs(parameters.spring_stiffness * wanted + parameters.velocity_stiffness * velocity)
-        thought, presses = presses, f_n != 0.0
-        assumed, grip = grip, np.where(presses, share(np.abs(f_t), linear), 1.0)
-        if (thought == presses).all() and (np.abs(grip - assumed) <= GRIP_TOLERANCE * assumed).all():
-            break
-    return Contacts(
-        normal=f_n,
-        friction=f_t,
-        bound=bound,
-        depth=depth,
-        X=X,
-        held=held,
-        p_WB=p_WB,
-        R_SW=R_SW,
-        memory=ContactMemory(
-            anchor=p_WQ + np.vecmat(_components(step * velocity - held), R_SW[..., :2, :]),
-            load=load * presses,
-            grip=grip,
-            V=V,
-            F=_wrenches(X, f_t, f_n),
-        ),
-    )
+        Args:
+            p_WB: origins of the bodies [m], shape (b, 3).
+            p_WQ: points [m], shape (b, k, 3).
+            V: velocities of the bodies at their origins, in W [rad/s, m/s], shape (b, 6).
+            memory: what the last step left.
+            mobility: G, in W at the origins, shape (6 b, 6 b); of zeros, the law is explicit.
+            time: [s].
+        """
+        parameters, area, step = self._parameters, self._area, self._step
+        b, k = area.shape
+        height, R_SW = self._ground(p_WQ)
+        depth = -height
+        X = point_jacobians(p_WQ - p_WB[:, None], R_SW)
+        e = np.matvec(R_SW, p_WQ - memory.anchor)
+        stretch = _along(e).copy()
+        e[..., 2] = height - parameters.normal_pressure / parameters.normal_stiffness
+        pull = -self._stiffness * e
+
+        # Where everything would go without this step's contact.
+        hG = step * mobility
+        end = free = (2.0 * V - memory.V).ravel() - hG @ memory.F.ravel()
+        presses, grip, impedance = memory.load > 0.0, memory.grip, self._impedance
+        left = self._left
+        for place in range(MOST_PASSES):
+            # The law's linearisation F0 - S v, for the points that are thought to press, with the grip that they had.
+            left[..., 2] = presses
+            left[..., :2] = (presses * grip)[..., None]
+            np.matmul(X.mT, (left * impedance).reshape(b, 3 * k, 1) * X, out=self._blocks)
+            system = hG @ self._system.reshape(6 * b, 6 * b)
+            system.flat[:: 6 * b + 1] += 1.0
+            solved = np.linalg.solve(system, free + hG @ _wrenches(X, left * pull).ravel())
+            end = solved if place < WHOLE_PASSES else 0.5 * (end + solved)
+
+            # The law itself, there; once more if it finds other points pressing or sliding than was thought.
+            v = (X @ end.reshape(b, 6, 1)).reshape(b, k, 3)
+            velocity, rate = _along(v), -v[..., 2]
+            f_n = normal_force(parameters, area, depth + step * rate, rate)
+            load = parameters.averaging * memory.load + (1.0 - parameters.averaging) * f_n
+            # A load that falls faster than its mean must not leave more friction than mu times what is left of it.
+            bound = friction_coefficient(parameters, f_n / area, time) * np.maximum(0.0, np.minimum(load, f_n))
+            f_t, held = friction_force(parameters, area, stretch + step * velocity, velocity, bound)
+            assumed, grip = grip, share(np.abs(f_t), np.abs(_along(pull - impedance * v)))
+            thought, presses = presses, f_n != 0.0
+            grip[~presses] = 1.0
+            if (thought == presses).all() and (np.abs(grip - assumed) <= GRIP_TOLERANCE * assumed).all():
+                break
+            if parameters.separation_damping != 1.0:
+                impedance = self._impedance.copy()
+                impedance[..., 2] = area * (normal_damping(parameters, rate) + step * parameters.normal_stiffness)
+        f = np.empty((b, k, 3))
+        _along(f)[...] = f_t
+        f[..., 2] = f_n
+        return Contacts(
+            force_S=f,
+            bound=bound,
+            depth=depth,
+            X=X,
+            held=held,
+            p_WB=p_WB,
+            R_SW=R_SW,
+            memory=ContactMemory(
+                anchor=p_WQ + np.vecmat(_components(step * velocity - held), R_SW[..., :2, :]),
+                load=load * presses,
+                grip=grip,
+                V=V,
+                F=_wrenches(X, f),
+            ),
+        )
 
 
 def point_jacobians(r: Array, R_SW: Array) -> Array:
@@ -236,7 +260,7 @@ def point_jacobians(r: Array, R_SW: Array) -> Array:
     """
     b, k = r.shape[:2]
     X = np.empty((b, k, 3, 6))
-    X[..., :3] = np.matvec((R_SW @ CROSS).reshape(*R_SW.shape, 3), r[..., None, :])
+    X[..., :3] = ((R_SW @ CROSS).reshape(*R_SW.shape[:-2], 9, 3) @ r[..., None]).reshape(b, k, 3, 3)
     X[..., 3:] = R_SW
     return X.reshape(b, 3 * k, 6)
 
@@ -295,7 +319,7 @@ def largest_contact_step(
 ) -> float:
     """Largest step [s] at which a body that stands on sticking patches stays bounded, linearised at rest.
 
-    The plant's step is (M + D) v' = (M - E) v - h Kp q + h J' F, q' = q + h v'; F is that of `contact_step`.
+    The plant's step is (M + D) v' = (M - E) v - h Kp q + h J' F, q' = q + h v'; F is that of `ContactStep`.
 
     Args:
         M: mass matrix, shape (nv, nv).
@@ -322,26 +346,19 @@ def largest_contact_step(
     return largest_stable_step(update, upper)
 
 
-def _split(vectors: Array) -> tuple[Complex, Array]:
-    """Of vectors in S, shape (b, k, 3): what is along the surface, complex, and what is along its normal; (b, k)."""
-    return vectors[..., :2].view(np.complex128)[..., 0], vectors[..., 2]
+def _along(vectors: Array) -> Complex:
+    """What of vectors in S, shape (b, k, 3), is along the surface; a view, shape (b, k)."""
+    along: Complex = vectors[..., :2].view(np.complex128)[..., 0]
+    return along
 
 
-def _components(along: Complex, normal: Array | None = None) -> Array:
-    """Vectors in S, shape (b, k, 3), or (b, k, 2) without a normal; the inverse of `_split`."""
-    components: Array = np.ascontiguousarray(along)[..., None].view(np.float64)
-    return components if normal is None else np.concatenate((components, normal[..., None]), axis=-1)
+def _components(along: Complex) -> Array:
+    """x and y in S, shape (b, k, 2)."""
+    return np.ascontiguousarray(along)[..., None].view(np.float64)
 
 
-def _velocities(X: Array, V: Array) -> tuple[Complex, Array]:
-    """Of the points, along the surface and into it, shape (b, k) each, from those of the bodies, shape (b, 6)."""
+def _wrenches(X: Array, f_S: Array) -> Array:
+    """Spatial forces at the bodies' origins in W, shape (b, 6), of forces on the points in S, shape (b, k, 3)."""
     b, rows = X.shape[:2]
-    along, normal = _split((X @ V[..., None]).reshape(b, rows // 3, 3))
-    return along, -normal
-
-
-def _wrenches(X: Array, f_t: Complex, f_n: Array) -> Array:
-    """Spatial forces at the bodies' origins in W, shape (b, 6), of forces on the points, shape (b, k)."""
-    b, rows = X.shape[:2]
-    wrenches: Array = (_components(f_t, f_n).reshape(b, 1, rows) @ X)[:, 0]
+    wrenches: Array = (f_S.reshape(b, 1, rows) @ X)[:, 0]
     return wrenches

@@ -20,7 +20,13 @@ from pydrake.systems.framework import (
 
 from humanwalk.body.contact import SolePatch
 from humanwalk.control.asperity import AsperityParameters
-from humanwalk.control.contact_step import ContactMemory, Contacts, body_jacobians, body_mobility, contact_step
+from humanwalk.control.contact_step import (
+    ContactMemory,
+    Contacts,
+    ContactStep,
+    body_jacobians,
+    body_mobility,
+)
 from humanwalk.control.ground import Ground
 from humanwalk.control.ground_force import foot_force
 
@@ -30,7 +36,7 @@ Array = npt.NDArray[np.float64]
 class AsperityContact(LeafSystem):
     """Normal force and asperity friction on patches of soles: b bodies, one patch of k points each, on f feet.
 
-    The forces at a time are those that the law gives at the end of the step that begins then (see `contact_step`).
+    The forces at a time are those that the law gives at the end of the step that begins then (see `ContactStep`).
 
     Inputs:
         state: plant state [q; v].
@@ -69,16 +75,17 @@ class AsperityContact(LeafSystem):
         """
         super().__init__()
         self._plant, self._plant_context = plant, plant.CreateDefaultContext()
-        self._ground, self._parameters, self._joint_impedance = ground, parameters, joint_impedance
+        self._joint_impedance = joint_impedance
         patches = [patch for foot in feet for patch in foot]
         self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
+        self._frames, self._world = [body.body_frame() for body in self._bodies], plant.world_frame()
         # The origin comes first, so that one call gives it and all points.
         self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
-        self._area = np.array([patch.area for patch in patches])
+        area = np.array([patch.area for patch in patches])
+        self._contact_step = ContactStep(parameters, ground, area, plant.time_step())
         ends = np.cumsum([len(foot) for foot in feet])
         self._feet = [slice(end - len(foot), end) for foot, end in zip(feet, ends, strict=True)]
-        self._step = plant.time_step()
-        b, k = self._area.shape
+        b, k = area.shape
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._shapes = ((b, k, 3), (b, k), (b, k), (b, 6), (b, 6))
@@ -87,7 +94,7 @@ class AsperityContact(LeafSystem):
         # Unrestricted, as the plant's step is: a simulator runs these before discrete updates, which would see a plant
         # that has already moved.
         self.DeclareInitializationUnrestrictedUpdateEvent(self._forget)
-        self.DeclarePeriodicUnrestrictedUpdateEvent(self._step, 0.0, self._remember)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(plant.time_step(), 0.0, self._remember)
         self.DeclarePeriodicUnrestrictedUpdateEvent(mobility_period, 0.0, self._renew_mobility)
 
         self._contacts = self.DeclareCacheEntry(
@@ -119,14 +126,13 @@ class AsperityContact(LeafSystem):
         """Origins of the bodies (b, 3), their points (b, k, 3) and their velocities (b, 6) in W."""
         plant, inner = self._plant, self._plant_context
         plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        world = plant.world_frame()
         p_W = np.array(
             [
-                plant.CalcPointsPositions(inner, body.body_frame(), points, world).T
-                for body, points in zip(self._bodies, self._points, strict=True)
+                plant.CalcPointsPositions(inner, frame, points, self._world).T
+                for frame, points in zip(self._frames, self._points, strict=True)
             ]
         )
-        V = np.array([plant.EvalBodySpatialVelocityInWorld(inner, body).get_coeffs() for body in self._bodies])
+        V = np.array([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
         return p_W[:, 0], p_W[:, 1:], V
 
     def _calc_contacts(self, context: Context, output: Value) -> None:
@@ -138,10 +144,7 @@ class AsperityContact(LeafSystem):
             )
         )
         mobility = context.get_discrete_state(self._mobility).value().reshape(V.size, V.size)
-        contacts = contact_step(
-            self._parameters, self._ground, self._area, p_WB, p_WQ, V, memory, mobility, self._step, context.get_time()
-        )
-        output.set_value(contacts)
+        output.set_value(self._contact_step(p_WB, p_WQ, V, memory, mobility, context.get_time()))
 
     def _remember(self, context: Context, state: State) -> EventStatus:
         self._write(state, self._contacts.Eval(context).memory)

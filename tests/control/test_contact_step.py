@@ -9,7 +9,7 @@ from humanwalk.control import contact_step as module
 from humanwalk.control.asperity import AsperityParameters
 from humanwalk.control.contact_step import (
     ContactMemory,
-    contact_step,
+    ContactStep,
     largest_contact_step,
     patch_impedance,
     point_jacobians,
@@ -28,7 +28,7 @@ def step(depth, V, mobility, h=1e-3, memory=None):
     p_WB = np.array([[0.0, 0.0, 0.05 - depth]])
     V = np.atleast_2d(V).astype(float)
     memory = memory or ContactMemory.fresh(p_WB[:, None] + R, V)
-    return contact_step(LAW, LEVEL, AREA, p_WB, p_WB[:, None] + R, V, memory, mobility, h, 0.0)
+    return ContactStep(LAW, LEVEL, AREA, h)(p_WB, p_WB[:, None] + R, V, memory, mobility, 0.0)
 
 
 @given(seed=st.integers(0, 1000))

@@ -45,7 +45,7 @@ def test_it_stands_on_every_ground(contact):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+@pytest.mark.parametrize("contact", ["point", "hydroelastic", "asperity"])
 def test_it_walks_its_first_steps(contact):
     diagram = make_diagram(
         load_scenario("walk", {"balanced.command.points": "[{time: 0.2, forward: 0.6}]", "contact": contact})

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from humanwalk.body import SIDES
+from humanwalk.body import SIDES, contact_spheres, sole_patches
+from humanwalk.control.asperity import AsperityParameters, normal_force
+from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 
@@ -63,3 +66,24 @@ def test_asperity_friction_is_never_more_than_the_ground_can_give(walks):
         use = column(walks["asperity"], f"{side.lower()}_foot.friction_use")
         assert use.max() <= 1.0 + 1e-9
         assert use.max() > 0.3
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_foot_that_stands_on_its_heel_points_is_not_tilted_off_the_others(skeleton, side):
+    """The whole-body program counts on points below `contact_height`: beyond, it would count on the heel for good."""
+    law, bodies = AsperityParameters(), (f"{side}Leg_Ankle", f"{side}Leg_FootMiddle")
+    heel, ball = (
+        np.mean([s.center[0] + skeleton.origins[body][0] for s in contact_spheres(skeleton) if s.body == body])
+        for body in bodies
+    )
+    (patch,) = (patch for patch in sole_patches(skeleton, side) if patch.body == bodies[0])
+    x = patch.p_BoQ_B[:, 0] + skeleton.origins[bodies[0]][0]
+
+    def forces(sunk, tilt):
+        return normal_force(law, patch.area, sunk - tilt * (x - heel), np.zeros_like(x))
+
+    def ahead_of_heel(tilt):
+        sunk = brentq(lambda depth: forces(depth, tilt).sum() - WEIGHT, -0.1, 0.1)
+        return np.average(x, weights=forces(sunk, tilt)) - heel
+
+    assert brentq(ahead_of_heel, 0.0, 1.0) * (ball - heel) < WholeBodyParameters().contact_height
