@@ -94,10 +94,11 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario, visuals: bool =
 
 def remove_visuals(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
     """Remove all geometry of a finalised plant that is only there to be seen."""
-    inspector = scene_graph.model_inspector()
+    source, inspector = plant.get_source_id(), scene_graph.model_inspector()
+    assert source is not None
     for geometry in inspector.GetAllGeometryIds():
         if inspector.GetProximityProperties(geometry) is None:
-            scene_graph.RemoveGeometry(plant.get_source_id(), geometry)
+            scene_graph.RemoveGeometry(source, geometry)
 
 
 def human_gains(scenario: Scenario) -> tuple[Array, Array]:

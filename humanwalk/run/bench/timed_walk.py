@@ -29,6 +29,12 @@ class TimedWalk:
         """Simulated time [s]."""
         return float(self.prepared.simulator.get_context().get_time())
 
+    def make_table(self) -> Cost:
+        """Make the table of what was recorded; returns the cost."""
+        recorder = self.prepared.recorder
+        assert recorder is not None
+        return cost_of(lambda: recorder.table(self.prepared.simulator.get_context()))
+
     def advance(self, until: float) -> Cost:
         """Go on to a simulated time [s], unless it has ended; returns the cost."""
         return cost_of(lambda: self._monitor.advance(self.prepared.simulator, until))
