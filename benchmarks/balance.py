@@ -25,7 +25,7 @@ from pydrake.systems.framework import Context, Diagram
 
 from humanwalk.body import SIDES
 from humanwalk.control.command import CommandProfile
-from humanwalk.control.commanded_path import CommandedPath
+from humanwalk.control.commanded_path import Place
 from humanwalk.control.push import Push
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.run.measures import cost_of_transport, steady_from, touchdowns
@@ -155,7 +155,7 @@ def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def off_path(scenario: Scenario, x: Array, y: Array) -> float:
     """Greatest distance [m] of the centre of mass from the curve that the command describes, whatever the time."""
     profile = CommandProfile(scenario.balanced.command)
-    path, curve, dt = CommandedPath(complex(x[0], y[0]), 0.0), [], 0.01
+    path, curve, dt = Place(complex(x[0], y[0]), 0.0), [], 0.01
     for tick in range(round(scenario.duration / dt)):
         curve.append(path.position)
         path = path.advanced(profile.at(tick * dt), dt)

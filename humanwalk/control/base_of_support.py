@@ -19,7 +19,7 @@ class BaseOfSupport:
     middle: float = quantity(0.03, "m", -0.05, 0.1)
     """From the ankle forward to the point of the foot on which the pendulum stands."""
 
-    roll: float = quantity(0.12, "s", 0.0, 0.3)
+    roll: float = quantity(0.122, "s", 0.0, 0.3)
     """Zero-moment point when single support ends, before the point on which the pendulum stands, per speed."""
 
     back: float = quantity(0.04, "m", 0.0, 0.1)

@@ -21,8 +21,8 @@ class ComHeight:
     time: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant with which the mean height changes."""
 
-    amplitude: float = quantity(0.014, "m", 0.0, 0.05)
-    """Of the arcs at 1 m/s, in proportion to the speed: longer steps need lower ones between two straight legs."""
+    amplitude: float = quantity(0.009, "m", 0.0, 0.05)
+    """Of the arcs at 1 m/s, with the square of the speed, as the drop between two straight legs grows with the step."""
 
     lowest: float = quantity(0.03, "s", -0.3, 0.3)
     """The height is lowest this long after a touchdown."""
@@ -38,7 +38,7 @@ class ComHeight:
 
     def below_top(self, speed: float) -> float:
         """How far the mean of the arcs is below their top at a forward speed [m]."""
-        return self.amplitude * abs(speed)
+        return self.amplitude * speed**2
 
     def lower_for(self, apart: float, ordinary: float, leg: float) -> float:
         """How much lower than in the ordinary walk the body must be between two feet [m].

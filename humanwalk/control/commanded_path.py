@@ -6,7 +6,8 @@ Points of the ground plane are complex numbers x + iy [m]; headings are angles a
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from humanwalk.control.command import Command
 from humanwalk.control.scalars import clip
@@ -15,66 +16,123 @@ from humanwalk.quantity import quantity
 SLOW = 0.1
 """Below this speed [m/s] a walker turns with the command, wherever on the path he is."""
 
+SPACING = 0.05
+"""Way between two places that are remembered [m]."""
+
+REMEMBERED = 40
+"""Number of these places: the last two metres."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place on the path: position [m], heading there [rad], turn rate there [rad/s], way since the start [m]."""
+
+    position: complex
+    heading: float
+    turn: float = 0.0
+    way: float = 0.0
+
+    def advanced(self, command: Command, dt: float) -> Place:
+        """Where a command leads in `dt`: a piece of an arc, told by its middle heading."""
+        turn = command.turn * dt
+        step = command.speed * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
+        return Place(self.position + step, self.heading + turn, command.turn, self.way + abs(command.speed) * dt)
+
+    def towards(self, other: Place, share: float) -> Place:
+        """On the straight line to another place, which is near."""
+        return Place(
+            self.position + share * (other.position - self.position),
+            self.heading + share * (other.heading - self.heading),
+            other.turn,
+            self.way + share * (other.way - self.way),
+        )
+
+
+@dataclass(frozen=True)
+class CommandedPath:
+    """The last two metres of the path: places `SPACING` apart, and at the end where the command has come to."""
+
+    places: tuple[Place, ...]
+
+    @staticmethod
+    def begin(position: complex, heading: float) -> CommandedPath:
+        """The path of a walker who stands [m, rad]."""
+        return CommandedPath((Place(position, heading),))
+
+    @property
+    def end(self) -> Place:
+        """Where the command has come to."""
+        return self.places[-1]
+
+    def advanced(self, command: Command, dt: float) -> CommandedPath:
+        """The path `dt` later."""
+        end = self.end.advanced(command, dt)
+        *kept, last = self.places
+        if not kept or last.way - kept[-1].way >= SPACING:
+            kept = [*kept, last][-REMEMBERED:]
+        return CommandedPath((*kept, end))
+
+    def beside(self, walker: complex, command: Command) -> Place:
+        """The place that is nearest to a walker; past the end, where the command leads."""
+        speed = abs(command.speed)
+        if speed < SLOW:
+            return self.end
+        direction = command.speed / speed * cmath.exp(1j * self.end.heading)
+        ahead = ((walker - self.end.position) / direction).real
+        nearest = self.end.advanced(command, max(ahead, 0.0) / speed)
+        for a, b in pairwise(self.places):
+            way = b.position - a.position
+            share = clip(((walker - a.position) / way).real, 0.0, 1.0) if way else 0.0
+            place = a.towards(b, share)
+            if abs(place.position - walker) < abs(nearest.position - walker):
+                nearest = place
+        return nearest
+
+    def moved(self, way: complex) -> CommandedPath:
+        """The path somewhere else [m]."""
+        return CommandedPath(tuple(replace(place, position=place.position + way) for place in self.places))
+
 
 @dataclass(frozen=True)
 class PathFollowing:
     """How the walker keeps to its path: sideways to its lane, and along it to where the command has come to."""
 
     lane_gain: float = quantity(0.5, "1/s", 0.0, 2.0)
-    """Sideways speed per distance from the path."""
+    """Speed across the path per distance from it."""
 
     lane_speed_limit: float = quantity(0.1, "m/s", 0.0, 0.5)
-    """Greatest such sideways speed."""
+    """Greatest such speed."""
 
     pace_gain: float = quantity(0.3, "1/s", 0.0, 2.0)
-    """Forward speed per distance behind the commanded place: so the mean speed is the commanded one."""
+    """Speed along the path per distance behind the commanded place: so the mean speed is the commanded one."""
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
-    """Greatest such forward speed."""
+    """Greatest such speed."""
 
-    def correction(self, path: CommandedPath, beside: CommandedPath, place: complex) -> complex:
+    def correction(self, path: CommandedPath, beside: Place, walker: complex, command: Command) -> complex:
         """Speed that is added to the commanded one, seen along the heading beside the walker [m/s].
 
         Args:
-            path: where the command has come to.
-            beside: where that was beside the walker.
-            place: of the walker [m].
+            path: what was commanded.
+            beside: its place beside the walker.
+            walker: his place [m].
+            command: now.
         """
-        behind = (path.position - place) / cmath.exp(1j * path.heading)
-        aside = (beside.position - place) / cmath.exp(1j * beside.heading)
-        return complex(
-            clip(self.pace_gain * behind.real, -self.pace_speed_limit, self.pace_speed_limit),
-            clip(self.lane_gain * aside.imag, -self.lane_speed_limit, self.lane_speed_limit),
-        )
+        aside = (beside.position - walker) / cmath.exp(1j * beside.heading)
+        correction = _bounded(self.lane_gain * aside, self.lane_speed_limit)
+        if command.speed:
+            pace = self.pace_gain * (path.end.way - beside.way)
+            correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.speed / abs(command.speed)
+        return correction
 
-    def leashed(self, path: CommandedPath, place: complex) -> CommandedPath:
+    def leashed(self, path: CommandedPath, beside: Place) -> CommandedPath:
         """The path, not farther ahead or behind than the pace makes up for: who was held up does not run after it."""
         if self.pace_gain == 0.0:
             return path
-        u = cmath.exp(1j * path.heading)
-        behind = (path.position - place) / u
+        gap = path.end.position - beside.position
         leash = self.pace_speed_limit / self.pace_gain
-        return CommandedPath(path.position + u * (clip(behind.real, -leash, leash) - behind.real), path.heading)
+        return path.moved(_bounded(gap, leash) - gap)
 
 
-@dataclass(frozen=True)
-class CommandedPath:
-    """Where the command has come to [m], and where it heads [rad]."""
-
-    position: complex
-    heading: float
-
-    def beside(self, place: complex, command: Command) -> CommandedPath:
-        """Where it was beside a walker who is behind, or will be: on an arc, the way heads elsewhere there."""
-        speed = abs(command.speed)
-        if speed < SLOW:
-            return self
-        behind = (self.position - place) / cmath.exp(1j * self.heading)
-        along = (behind * command.speed.conjugate()).real / speed
-        return self.advanced(command, -along / speed)
-
-    def advanced(self, command: Command, dt: float) -> CommandedPath:
-        """The same `dt` later: a piece of an arc, told by its middle heading."""
-        turn = command.turn * dt
-        way = command.speed * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
-        return CommandedPath(self.position + way, self.heading + turn)
+def _bounded(vector: complex, limit: float) -> complex:
+    return vector if abs(vector) <= limit else vector * (limit / abs(vector))

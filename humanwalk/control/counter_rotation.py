@@ -11,7 +11,7 @@ from humanwalk.quantity import quantity
 class CounterRotation:
     """Turns per distance between the feet along the way of the walk."""
 
-    pelvis: float = quantity(0.2, "rad/m", 0.0, 1.0)
+    pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
     """Of the pelvis, with the leading leg."""
 
     chest: float = quantity(0.15, "rad/m", 0.0, 1.0)

@@ -22,7 +22,7 @@ class FootRockers:
     pitch: float = quantity(1.0, "rad", 0.0, 1.2)
     """Pitch of the foot that leaves, at the end of double support at 1 m/s and faster; in proportion below."""
 
-    slowest: float = quantity(0.5, "m/s", 0.0, 3.0)
+    slowest: float = quantity(0.2, "m/s", 0.0, 3.0)
     """In a slower walk, and in going backward, feet leave flat."""
 
     def rises(self, speed: float) -> bool:

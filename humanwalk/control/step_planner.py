@@ -19,7 +19,7 @@ from humanwalk.control.command import Command
 from humanwalk.control.commanded_path import CommandedPath, PathFollowing
 from humanwalk.control.counter_rotation import CounterRotation
 from humanwalk.control.foot_placement import StepPlacement, foothold_gain
-from humanwalk.control.foot_rockers import FootRockers, briskness
+from humanwalk.control.foot_rockers import FootRockers
 from humanwalk.control.lipm import (
     HalfSteps,
     PeriodicGait,
@@ -42,7 +42,7 @@ TOES_RELAXED = 0.4
 class StepTiming:
     """Durations of a step."""
 
-    step: float = quantity(0.52, "s", 0.3, 1.2)
+    step: float = quantity(0.53, "s", 0.3, 1.2)
     """From touchdown to touchdown of the other foot."""
 
     double_support: float = quantity(0.10, "s", 0.04, 0.4)
@@ -106,7 +106,8 @@ class PlannerState:
     stance: the foot that carries in this step.
     right, left: ankles as they stand [m]; the swinging foot's is where it stood.
     heading, old_heading: of this step and of the one before [rad].
-    path: where the command has come to.
+    path: what was commanded.
+    turn: of the path where the walker is [rad/s].
     to_path: speed in this step beyond the commanded one, towards the path [m/s].
     height, height_rate: of the centre of mass without its arcs [m, m/s].
     walked: steps since standing.
@@ -123,6 +124,7 @@ class PlannerState:
     path: CommandedPath
     height: float
     height_rate: float = 0.0
+    turn: float = 0.0
     to_path: complex = 0.0
     walked: int = 0
     swing: Swing | None = None
@@ -174,7 +176,7 @@ class StepPlanner:
             left=body.left.position,
             heading=heading,
             old_heading=heading,
-            path=CommandedPath(middle, heading),
+            path=CommandedPath.begin(middle, heading),
             height=body.com_height,
         )
 
@@ -217,12 +219,12 @@ class StepPlanner:
             foot.pitch,
             foot.pitch_rate,
             self.ankle_height,
-            self.parameters.swing.toe_up * briskness(command.forward),
+            self.parameters.swing.heel_strike(command.forward),
             timing.step - timing.double_support,
             self.parameters.swing,
         )
         pace = command.speed * cmath.exp(1j * state.heading)
-        motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.push_off * pace)
+        motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.leaving(pace))
         left_as = self._other_foot(state, command, None, 1.0)
         swing = Swing(motion, profile, foot.position, foot.yaw, left_as.toes[0])
         return replace(state, phase=Phase.SINGLE_SUPPORT, swing=swing)
@@ -232,18 +234,21 @@ class StepPlanner:
         right, left = body.right.position, body.left.position
         middle = 0.5 * (right + left)
         following = self.parameters.path
-        path = following.leashed(state.path, middle)
+        path = following.leashed(state.path, state.path.beside(middle, command))
         beside = path.beside(middle, command)
+        stance = other(state.stance)
+        ahead = path.beside(body.foot(stance).position, command)
         return PlannerState(
             phase=Phase.DOUBLE_SUPPORT if moving else Phase.STAND,
             elapsed=0.0,
-            stance=other(state.stance),
+            stance=stance,
             right=right,
             left=left,
-            heading=beside.heading,
+            heading=ahead.heading,
             old_heading=state.heading,
             path=path,
-            to_path=following.correction(path, beside, middle),
+            turn=ahead.turn,
+            to_path=following.correction(path, beside, middle, command),
             height=state.height,
             height_rate=state.height_rate,
             walked=state.walked + 1 if moving else 0,
@@ -345,7 +350,7 @@ class StepPlanner:
         timing, placement = p.timing, p.placement
         speed = command.speed + state.to_path
         move = speed * timing.step
-        turn = command.turn * timing.step
+        turn = state.turn * timing.step
         # Sideways, one of the two half-steps is narrower by the way of a step.
         width = max(placement.width, placement.narrowest + abs(move.imag))
         half = 0.5j * width * (1.0 + cmath.exp(1j * turn))
@@ -392,7 +397,7 @@ class StepPlanner:
         profile = swing.profile.at(progress)
         relaxed, slope = blend(progress / TOES_RELAXED)
         slope *= rate / (TOES_RELAXED * (timing.step - timing.double_support))
-        goal_yaw = state.heading + command.turn * timing.step
+        goal_yaw = state.heading + state.turn * timing.step
         return FootReference(
             FootTask.SWING,
             0.0,
@@ -444,6 +449,9 @@ class StepPlanner:
         lead = ((body.left.position - body.right.position) / u).real
         lead_rate = ((body.left.velocity - body.right.velocity) / u).real
         swing, swing_rate = rotation.arms * lead, rotation.arms * lead_rate
+        is_stepping = state.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+        turned = state.turn * (state.elapsed - 0.5 * self.parameters.timing.step) if is_stepping else 0.0
+        facing = state.heading + turned
         return WalkingReference(
             phase=state.phase,
             phase_time=state.elapsed,
@@ -453,8 +461,8 @@ class StepPlanner:
             com_height=height,
             right=feet["Right"],
             left=feet["Left"],
-            pelvis_yaw=state.heading - rotation.pelvis * lead,
-            chest_yaw=state.heading + rotation.chest * lead,
+            pelvis_yaw=facing - rotation.pelvis * lead,
+            chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((swing, swing_rate), (-swing, -swing_rate)),
             foothold=foothold,
         )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.control.scalars import clip
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.quantity import quantity
 
@@ -13,8 +14,12 @@ HEIGHT_SHAPE = (1.0, 0.6, 0.27)
 """Height of the ankle at the three quarters within the swing, as a share of its apex: people's foot rises with the
 heel that leaves and is low again by the middle of the swing."""
 
-PITCH_BLEND = (0.0, -0.04, 0.41, 0.87, 1.0)
-"""Share of the pitch's way at the quarters of the swing (people's: 0.1, 0.5, 0.9)."""
+PITCH_BLEND = (0.0, -0.1, 0.41, 0.87, 1.0)
+"""Share of the pitch's way at the quarters of the swing: toes still point down while the knee bends (people's whole
+foot: 0.1, 0.5, 0.9)."""
+
+BRISKEST = 1.7
+"""Speed from which the foot lands no steeper [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +29,8 @@ class SwingParameters:
     lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
 
-    toe_up: float = quantity(0.25, "rad", 0.0, 0.6)
-    """Pitch of the foot at heel strike when walking at 1 m/s and faster; in proportion below."""
+    toe_up: float = quantity(0.26, "rad s/m", 0.0, 0.6)
+    """Pitch of the foot at heel strike, per speed forward up to `BRISKEST`."""
 
     landing_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
@@ -33,10 +38,10 @@ class SwingParameters:
     landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
     """How far below the ground the swing aims, so that it ends by touching."""
 
-    push_off: float = quantity(6.0, "1/s", 0.0, 30.0)
-    """Acceleration of the foot over ground as it leaves, per speed of the walk."""
+    push_off: float = quantity(8.6, "1/m", 0.0, 30.0)
+    """Acceleration of the foot over ground as it leaves, per squared speed of the walk."""
 
-    landing_pace: float = quantity(0.25, "", 0.0, 1.0)
+    landing_pace: float = quantity(0.55, "", 0.0, 1.0)
     """Speed of the foot over ground at touchdown, as a share of that of the walk."""
 
     landing_brake: float = quantity(22.0, "1/s", 0.0, 50.0)
@@ -44,6 +49,14 @@ class SwingParameters:
 
     jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
     """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
+
+    def heel_strike(self, speed: float) -> float:
+        """Pitch at touchdown, toes up positive [rad], at a forward speed [m/s]."""
+        return self.toe_up * clip(speed, 0.0, BRISKEST)
+
+    def leaving(self, pace: complex) -> complex:
+        """Acceleration over ground of the foot that leaves [m/s2], at a velocity of the walk [m/s]."""
+        return self.push_off * abs(pace) * pace
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from humanwalk.control.command import Command
 from humanwalk.control.commanded_path import CommandedPath, PathFollowing
 
-START = CommandedPath(0.0, 0.0)
+START = CommandedPath.begin(0.0, 0.0)
 FOLLOWING = PathFollowing()
-TURNING = Command(0.6, 0.0, 0.2)
+STRAIGHT, TURNING = Command(0.6), Command(0.6, 0.0, 0.2)
 
 
-def walked(command, duration, start=START, dt=0.004):
+def walked(command, duration, start=START, dt=0.02):
     path = start
     for _ in range(round(duration / dt)):
         path = path.advanced(command, dt)
@@ -24,47 +24,67 @@ def walked(command, duration, start=START, dt=0.004):
 
 def test_a_constant_turn_is_a_circle():
     for duration in (2.0, 7.0, 12.0):
-        path = walked(TURNING, duration)
-        assert abs(path.position - 3.0j) == pytest.approx(3.0, abs=1e-4)
-        assert path.heading == pytest.approx(0.2 * duration)
+        end = walked(TURNING, duration).end
+        assert abs(end.position - 3.0j) == pytest.approx(3.0, abs=1e-3)
+        assert end.heading == pytest.approx(0.2 * duration)
+        assert end.way == pytest.approx(0.6 * duration)
 
 
 def test_sideways_is_to_the_left():
-    assert walked(Command(0.0, 0.3, 0.0), 2.0).position == pytest.approx(0.6j)
+    assert walked(Command(0.0, 0.3, 0.0), 2.0).end.position == pytest.approx(0.6j)
 
 
-@given(st.floats(-0.5, 0.5))
+def test_what_is_remembered_does_not_grow():
+    assert len(walked(STRAIGHT, 20.0).places) == len(walked(STRAIGHT, 10.0).places)
+
+
+@given(st.floats(-0.5, 1.5))
 def test_beside_a_walker_on_the_circle_is_where_he_is(lag):
+    """Also for who is ahead of the command."""
     path = walked(TURNING, 6.0)
-    there = walked(TURNING, 6.0 - lag / 0.6)
+    there = walked(TURNING, 6.0 - lag / 0.6).end
     beside = path.beside(there.position, TURNING)
     assert beside.position == pytest.approx(there.position, abs=0.02)
-    assert beside.heading == pytest.approx(there.heading, abs=0.01)
+    assert beside.heading == pytest.approx(there.heading, abs=0.02)
+    assert beside.way == pytest.approx(there.way, abs=0.02)
+
+
+@given(st.floats(0.05, 0.5))
+def test_who_is_still_before_the_corner_goes_straight_on(lag):
+    """The command turns already."""
+    corner = walked(STRAIGHT, 3.0)
+    beside = walked(TURNING, 1.0, corner).beside(corner.end.position - lag, TURNING)
+    assert beside.heading == pytest.approx(0.0, abs=0.02)
+    assert beside.turn == 0.0
 
 
 def test_who_turns_on_the_spot_turns_with_the_command():
-    path = CommandedPath(1.0, 0.7)
-    assert path.beside(0.5j, Command(0.0, 0.0, 0.5)) == path
+    path = CommandedPath.begin(1.0, 0.7)
+    assert path.beside(0.5j, Command(0.0, 0.0, 0.5)) == path.end
 
 
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-math.pi, math.pi))
 def test_the_correction_is_towards_the_path_and_bounded(x, y, heading):
-    path = CommandedPath(0.3 + 0.1j, heading)
+    path = walked(STRAIGHT, 3.0, CommandedPath.begin(0.3 + 0.1j, heading))
     away = complex(x, y) * cmath.exp(1j * heading)
-    correction = FOLLOWING.correction(path, path, path.position + away)
+    walker = path.end.position + away
+    correction = FOLLOWING.correction(path, path.beside(walker, STRAIGHT), walker, STRAIGHT)
     assert correction.real * x <= 1e-9
     assert correction.imag * y <= 1e-9
-    assert abs(correction.real) <= FOLLOWING.pace_speed_limit
-    assert abs(correction.imag) <= FOLLOWING.lane_speed_limit
+    assert abs(correction.real) <= FOLLOWING.pace_speed_limit + 1e-9
+    assert abs(correction.imag) <= FOLLOWING.lane_speed_limit + 1e-9
 
 
 def test_who_is_on_the_path_is_left_alone():
-    assert FOLLOWING.correction(START, START, 0.0) == 0.0
+    path = walked(STRAIGHT, 2.0)
+    assert FOLLOWING.correction(path, path.end, path.end.position, STRAIGHT) == 0.0
 
 
 def test_the_path_waits_for_who_was_held_up_but_keeps_his_lane():
-    leashed = FOLLOWING.leashed(CommandedPath(5.0, 0.0), 1.0 + 0.4j)
     leash = FOLLOWING.pace_speed_limit / FOLLOWING.pace_gain
-    assert leashed.position == pytest.approx(1.0 + leash)
-    near = CommandedPath(1.0 + 0.5 * leash, 0.0)
-    assert FOLLOWING.leashed(near, 1.0 + 0.4j).position == pytest.approx(near.position)
+    path = walked(STRAIGHT, 5.0)
+    far = path.end.position - leash - 0.5 + 0.4j
+    leashed = FOLLOWING.leashed(path, path.beside(far, STRAIGHT))
+    assert leashed.end.position == pytest.approx(far.real + leash, abs=1e-6)
+    near = path.end.position - 0.5 * leash + 0.4j
+    assert FOLLOWING.leashed(path, path.beside(near, STRAIGHT)).end == path.end
