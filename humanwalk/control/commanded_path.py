@@ -97,7 +97,7 @@ class CommandedPath:
 class PathFollowing:
     """How the walker keeps to its path: sideways to its lane, and along it to where the command has come to."""
 
-    lane_gain: float = quantity(0.5, "1/s", 0.0, 2.0)
+    lane_gain: float = quantity(0.9, "1/s", 0.0, 2.0)
     """Speed across the path per distance from it."""
 
     lane_speed_limit: float = quantity(0.1, "m/s", 0.0, 0.5)

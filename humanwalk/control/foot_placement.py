@@ -29,6 +29,9 @@ class StepPlacement:
     across: float = quantity(0.1, "m", -0.3, 0.3)
     """So far may it be across at most: one leg in front of the other."""
 
+    uncrossed: float = quantity(0.05, "m", -0.3, 0.3)
+    """A foot that is less than this beside the other before it leaves takes its time to leave."""
+
     widest: float = quantity(0.65, "m", 0.2, 1.0)
     """Greatest sideways distance."""
 
@@ -50,6 +53,18 @@ class StepPlacement:
     def least_width(self, x: float) -> float:
         """Least sideways distance of a foot that is x before the stance foot, or -x behind it [m]."""
         return max(self.narrowest - max(abs(x) - self.beside, 0.0), -self.across)
+
+    def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> tuple[float, float]:
+        """How far the wanted foothold is across the stance foot, and beyond the widest [m]: then the foot that is to go
+        there should be in the air already. Nothing where it stands across itself: it must come out from behind first.
+
+        Args: see `within_reach`.
+        """
+        outward = -1.0 if stance == "Left" else 1.0
+        width = outward * wanted.imag
+        if outward * place.imag < self.uncrossed:
+            return 0.0, 0.0
+        return max(-width, 0.0), max(width - self.widest, 0.0)
 
     def within_reach(self, wanted: complex, stance: Side, place: complex) -> tuple[complex, float]:
         """The nearest foothold that legs reach without touching, and by how much the wanted one calls for a hurry [m].

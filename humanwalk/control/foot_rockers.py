@@ -44,12 +44,7 @@ class FootRockers:
             speed: forward [m/s].
         """
         duration = self.ball + double_support
-        final = self.pitch * briskness(speed)
+        final = self.pitch * clip(speed, 0.0, 1.0)
         s = min(since / duration, 1.0)
         pitch = (final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)
         return FootReference(FootTask.HEEL_OFF, load, yaw, pitch=pitch, toes=pitch[:2])
-
-
-def briskness(speed: float) -> float:
-    """0 in standing or going backward, 1 at 1 m/s and faster."""
-    return clip(speed, 0.0, 1.0)

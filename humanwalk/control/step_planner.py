@@ -63,6 +63,9 @@ class StepTiming:
     hurry_limit: float = quantity(0.8, "", 0.0, 3.0)
     """Greatest extra rate of the clock."""
 
+    lift_off_limit: float = quantity(3.0, "", 0.0, 10.0)
+    """The same in double support when balance wants the next foothold across the stance foot: the old one only waits."""
+
 
 @dataclass(frozen=True)
 class StepPlannerParameters:
@@ -307,10 +310,13 @@ class StepPlanner:
         )
 
         rate, swing = 1.0, state.swing
+        error = (forward(segments, xi, self.frequency) - end) / u
+        wanted = displacement + foothold_gain(self.frequency, timing.double_support) * error
+        place = (body.foot(other(state.stance)).position - state.ankle(state.stance)) / u
+        if both:
+            across, beyond = self.parameters.placement.late_lift_off(wanted, state.stance, place)
+            rate += min(timing.hurry * across, timing.lift_off_limit) + min(timing.hurry * beyond, timing.hurry_limit)
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
-            error = (forward(segments, xi, self.frequency) - end) / u
-            wanted = displacement + foothold_gain(self.frequency, timing.double_support) * error
-            place = (body.foot(other(state.stance)).position - state.ankle(state.stance)) / u
             foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance, place)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
             swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)

@@ -105,6 +105,17 @@ def test_a_turn_turns_the_feet_and_the_walk():
     assert cmath.phase(body.com_velocity) == pytest.approx(state.heading, abs=0.6)
 
 
+def test_it_stays_on_the_path_round_a_corner():
+    command = lambda time: Command(0.4, 0.0, 0.4 if 3.0 < time < 6.9 else 0.0) if time > 0.2 else Command()  # noqa: E731
+    for _, state, _, _ in pendulum_walk(planner(), command, 10.0):
+        assert abs(state.path.beside(state.middle, Command(0.4)).position - state.middle) < 0.03
+
+
+def test_the_body_turns_without_a_jump():
+    yaws = [ref.pelvis_yaw for time, _, ref, _ in pendulum_walk(planner(), walk_at(0.4, turn=0.4), 8.0) if time > 4.0]
+    assert max(abs(later - earlier) for earlier, later in pairwise(yaws)) < 0.05
+
+
 @settings(max_examples=10)
 @given(st.floats(0.02, 0.15), st.floats(-math.pi, math.pi))
 def test_a_pendulum_that_is_pushed_is_caught_by_steps(size, direction):

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.control.swing_foot import PlanarMotion, SwingParameters, SwingProfile
+from humanwalk.control.swing_foot import BRISKEST, PlanarMotion, SwingParameters, SwingProfile
 
 DT = 0.004
 
@@ -55,6 +55,20 @@ def test_it_lands_with_the_speed_and_deceleration_that_are_asked():
         t += DT
     assert motion.velocity.real == pytest.approx(0.35 + 30.0 * (0.4 - t), abs=0.1)
     assert motion.acceleration.real == pytest.approx(-30.0, abs=6.0)
+
+
+def test_it_lands_the_steeper_the_faster_but_not_on_its_end():
+    law = SwingParameters()
+    assert law.heel_strike(-0.5) == law.heel_strike(0.0) == 0.0
+    assert law.heel_strike(1.4) == pytest.approx(2.0 * law.heel_strike(0.7))
+    assert law.heel_strike(3.0) == law.heel_strike(BRISKEST)
+
+
+@given(st.complex_numbers(max_magnitude=2.0))
+def test_it_leaves_the_way_that_the_walk_goes(pace):
+    law = SwingParameters()
+    assert law.leaving(2.0 * pace) == pytest.approx(4.0 * law.leaving(pace))
+    assert (law.leaving(pace) * pace.conjugate()).real == pytest.approx(law.push_off * abs(pace) ** 3, abs=1e-9)
 
 
 @pytest.fixture
