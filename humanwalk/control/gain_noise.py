@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,7 @@ def gain_factors(size: int, noise: float, random: np.random.Generator) -> Array:
 
 def noisy_tasks(parameters: WholeBodyParameters, noise: float, random: np.random.Generator) -> WholeBodyParameters:
     """The same parameters, stiffness and damping of each task times a random factor each; weights stay."""
-    changed = {}
+    changed: dict[str, Any] = {}
     for field in fields(parameters):
         gains = getattr(parameters, field.name)
         if isinstance(gains, TaskGains | PrescribedGains):

@@ -64,7 +64,7 @@ class StepTiming:
     """Greatest extra rate of the clock."""
 
     lift_off_limit: float = quantity(3.0, "", 0.0, 10.0)
-    """The same in double support when balance wants the next foothold across the stance foot: the old one only waits."""
+    """The same in double support when balance wants the next foothold across the stance foot."""
 
 
 @dataclass(frozen=True)

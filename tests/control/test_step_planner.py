@@ -153,8 +153,8 @@ def test_a_wide_step_lowers_the_body():
 
 def test_the_path_begins_along_the_heading_that_is_given_not_along_the_feet():
     turned = replace(standing(), right=foot(-0.0875j, yaw=0.1), left=foot(0.0875j, yaw=0.06))
-    assert planner().start(turned).path.heading == 0.0
-    assert planner().start(turned, heading=0.3).path.heading == 0.3
+    assert planner().start(turned).heading == 0.0
+    assert planner().start(turned, heading=0.3).heading == 0.3
 
 
 def test_it_stops_and_stands_with_its_feet_side_by_side():
