@@ -37,8 +37,9 @@ from humanwalk.systems.push_source import PushSource
 
 Array = npt.NDArray[np.float64]
 
-JOINT_NOISE = 0.01
-"""Standard deviation of the initial posture in the rows with seeds [rad]."""
+NOISE = {"start.joint_noise": "0.01", "start.rate_noise": "0.1", "start.gain_noise": "0.05"}
+"""Of the rows with seeds: the foot of a straight leg stands 1 cm elsewhere for each joint that errs by its standard
+deviation, and the body starts with about 0.1 m/s; gains are known to a twentieth."""
 
 PUSH_TIMES = [8.0 + 1.04 * share for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
 """Five timings over a stride, in the steady walk [s]."""
@@ -90,7 +91,7 @@ def speeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def seeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
     for speed in args.speeds:
         for seed in range(args.seeds):
-            scenario = walk(speed, args.duration, **{"seed": str(seed), "start.joint_noise": str(JOINT_NOISE)})
+            scenario = walk(speed, args.duration, **{"seed": str(seed)} | NOISE)
             yield measure(f"speed {speed:g} seed {seed}", scenario)
 
 

@@ -78,6 +78,13 @@ class StartParameters:
     joint_noise: float = quantity(0.0, "rad", 0.0, 0.2)
     """Standard deviation of a random error of every joint angle, drawn from the scenario's seed."""
 
+    rate_noise: float = quantity(0.0, "rad/s", 0.0, 2.0)
+    """Standard deviation of a random rate of every joint, drawn from the seed; the pelvis is at rest."""
+
+    gain_noise: float = quantity(0.0, "", 0.0, 0.5)
+    """Standard deviation of the logarithm of a random factor on every gain, drawn from the seed: kp and kd of each
+    actuator; stiffness and damping of each task of the walker on its own feet. It lasts for the whole run."""
+
 
 @dataclass(frozen=True)
 class BalanceParameters:

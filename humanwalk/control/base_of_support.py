@@ -31,8 +31,12 @@ class BaseOfSupport:
     front: float = quantity(0.2, "m", 0.0, 0.4)
     """And this near before it."""
 
-    half_width: float = quantity(0.03, "m", 0.0, 0.1)
+    half_width: float = quantity(0.04, "m", 0.0, 0.1)
     """And this near beside it."""
+
+    sideways: float = quantity(3.0, "", 0.1, 30.0)
+    """How much more a place beside the wanted one counts than one before or behind it, on the line between two feet:
+    the next step mends an error forward anywhere, one sideways only outward."""
 
     def middle_of(self, ankle: complex, heading: float) -> complex:
         """The point of a foot on which the pendulum stands."""
@@ -50,12 +54,13 @@ class BaseOfSupport:
             other: ankle of the other foot where that carries too.
             on_ball: whether the heel is up.
         """
+        u = cmath.exp(1j * heading)
         anchor = stance
         if other is not None:
-            way = stance - other
-            along = ((zmp - other) * way.conjugate()).real / max(abs(way) ** 2, 1e-6)
-            anchor = other + clip(along, 0.0, 1.0) * way
-        u = cmath.exp(1j * heading)
+            way, goal = ((point - other) / u for point in (stance, zmp))
+            square = way.real**2 + (self.sideways * way.imag) ** 2
+            along = (way.real * goal.real + self.sideways**2 * way.imag * goal.imag) / max(square, 1e-6)
+            anchor = other + clip(along, 0.0, 1.0) * (stance - other)
         local = (zmp - anchor) / u
         x = clip(local.real, self.ball if on_ball else -self.back, self.front)
         y = clip(local.imag, -self.half_width, self.half_width)

@@ -27,13 +27,39 @@ class ComHeight:
     lowest: float = quantity(0.03, "s", -0.3, 0.3)
     """The height is lowest this long after a touchdown."""
 
+    stretch: float = quantity(1.15, "", 1.0, 10.0)
+    """A step longer than this times the ordinary one needs a lower body: else the leg does not reach the ground."""
+
+    easy: float = quantity(0.5, "m", 0.0, 2.0)
+    """A step that is not longer than this times `stretch` needs none, however short the ordinary one is."""
+
+    stretch_time: float = quantity(0.08, "s", 0.02, 2.0)
+    """Time constant with which the body goes down for such a step."""
+
     def below_top(self, speed: float) -> float:
         """How far the mean of the arcs is below their top at a forward speed [m]."""
         return self.amplitude * speed**2
 
-    def approach(self, height: float, rate: float, goal: float, dt: float) -> tuple[float, float, float]:
+    def lower_for(self, apart: float, ordinary: float, leg: float) -> float:
+        """How much lower than in the ordinary walk the body must be between two feet [m].
+
+        Args:
+            apart: distance of the feet [m].
+            ordinary: that of the ordinary step [m].
+            leg: height of the body over straight legs that are closed [m].
+        """
+
+        def drop(distance: float) -> float:
+            return leg - math.sqrt(max(leg**2 - 0.25 * distance**2, 0.0))
+
+        return max(drop(apart) - drop(self.stretch * max(ordinary, self.easy)), 0.0)
+
+    def approach(
+        self, height: float, rate: float, goal: float, dt: float, stretched: bool = False
+    ) -> tuple[float, float, float]:
         """The mean height `dt` later, its rate, and its acceleration until then [m, m/s, m/s2]."""
-        acceleration = (goal - height) / self.time**2 - 2.0 * rate / self.time
+        time = self.stretch_time if stretched else self.time
+        acceleration = (goal - height) / time**2 - 2.0 * rate / time
         rate += dt * acceleration
         return height + dt * rate, rate, acceleration
 

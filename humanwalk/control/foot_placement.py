@@ -1,4 +1,4 @@
-"""Where the next foot goes: as the error of the pendulum asks, within reach, and never across the other leg.
+"""Where the next foot goes: as the error of the pendulum asks, within reach, and never into the other leg.
 
 Points of the ground plane are complex numbers x + iy [m]; a foothold is seen from the stance ankle along its heading.
 """
@@ -21,7 +21,16 @@ class StepPlacement:
     """Between the lines of the two feet."""
 
     narrowest: float = quantity(0.09, "m", 0.0, 0.3)
-    """Least sideways distance of a foothold from the stance foot: below, the legs would cross."""
+    """Least sideways distance of a foothold beside the stance foot: below, the legs would touch."""
+
+    beside: float = quantity(0.15, "m", 0.0, 0.5)
+    """A foothold farther than this before or behind the stance foot may be narrower, by as much as it is farther."""
+
+    across: float = quantity(0.1, "m", -0.3, 0.3)
+    """So far may it be across at most: one leg in front of the other."""
+
+    uncrossed: float = quantity(0.05, "m", -0.3, 0.3)
+    """A foot that is less than this beside the other before it leaves takes its time to leave."""
 
     widest: float = quantity(0.65, "m", 0.2, 1.0)
     """Greatest sideways distance."""
@@ -41,8 +50,30 @@ class StepPlacement:
     freeze: float = quantity(0.04, "s", 0.0, 0.2)
     """The foothold is settled this long before touchdown."""
 
-    def within_reach(self, wanted: complex, stance: Side) -> tuple[complex, float]:
-        """The nearest foothold that legs reach uncrossed, and by how much the wanted one calls for a hurry [m]."""
+    def least_width(self, x: float) -> float:
+        """Least sideways distance of a foot that is x before the stance foot, or -x behind it [m]."""
+        return max(self.narrowest - max(abs(x) - self.beside, 0.0), -self.across)
+
+    def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> tuple[float, float]:
+        """How far the wanted foothold is across the stance foot, and beyond the widest [m]: then the foot that is to go
+        there should be in the air already. Nothing where it stands across itself: it must come out from behind first.
+
+        Args: see `within_reach`.
+        """
+        outward = -1.0 if stance == "Left" else 1.0
+        width = outward * wanted.imag
+        if outward * place.imag < self.uncrossed:
+            return 0.0, 0.0
+        return max(-width, 0.0), max(width - self.widest, 0.0)
+
+    def within_reach(self, wanted: complex, stance: Side, place: complex) -> tuple[complex, float]:
+        """The nearest foothold that legs reach without touching, and by how much the wanted one calls for a hurry [m].
+
+        Args:
+            wanted: foothold.
+            stance: the foot that carries.
+            place: where the swinging foot is; it must pass beside the other before it may cross.
+        """
         outward = -1.0 if stance == "Left" else 1.0
         width = outward * wanted.imag
         beyond = max(
@@ -51,10 +82,10 @@ class StepPlacement:
             abs(wanted.real) - 0.95 * self.longest,
             0.0,
         )
-        foothold = complex(
-            clip(wanted.real, -self.longest, self.longest),
-            outward * clip(width, self.narrowest, self.widest),
-        )
+        x = clip(wanted.real, -self.longest, self.longest)
+        has_passed = place.real * x > 0.0
+        narrowest = max(self.least_width(x), self.least_width(place.real)) if has_passed else self.narrowest
+        foothold = complex(x, outward * clip(width, narrowest, self.widest))
         return foothold, beyond
 
 

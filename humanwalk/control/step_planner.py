@@ -63,6 +63,9 @@ class StepTiming:
     hurry_limit: float = quantity(0.8, "", 0.0, 3.0)
     """Greatest extra rate of the clock."""
 
+    lift_off_limit: float = quantity(3.0, "", 0.0, 10.0)
+    """The same in double support when balance wants the next foothold across the stance foot."""
+
 
 @dataclass(frozen=True)
 class StepPlannerParameters:
@@ -79,6 +82,9 @@ class StepPlannerParameters:
 
     dcm_gain: float = quantity(1.0, "", 0.0, 5.0)
     """The error of the DCM shrinks at this many times the pendulum's own rate, while the foot is long enough."""
+
+    double_support_gain: float = quantity(2.0, "", 0.0, 20.0)
+    """The same in double support, where both feet together are long enough for more."""
 
     stop_speed: float = quantity(0.05, "m/s", 0.0, 0.3)
     """A step that is commanded slower than this is the last."""
@@ -162,9 +168,8 @@ class StepPlanner:
         self.first_swing = first_swing
         self.period = period
 
-    def start(self, body: BodyState) -> PlannerState:
-        """Standing on both feet, which face the same way."""
-        heading = 0.5 * (body.right.yaw + body.left.yaw)
+    def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
+        """Standing on both feet; the path begins along a heading, wherever the feet face."""
         middle = 0.5 * (body.right.position + body.left.position)
         return PlannerState(
             phase=Phase.STAND,
@@ -287,6 +292,7 @@ class StepPlanner:
         stance_is_left = state.stance == "Left"
         u = cmath.exp(1j * state.heading)
         gait = self._gait(state, command)
+        displacement = gait.displacement.left if stance_is_left else gait.displacement.right
         ends = gait.end_offsets(self.frequency)
         stance_point = self.parameters.support.middle_of(state.ankle(state.stance), state.heading)
         end = stance_point + u * (ends.left if stance_is_left else ends.right)
@@ -294,19 +300,24 @@ class StepPlanner:
         segments = self._segments_left(state, gait)
         zmp_reference = segments[0].start
         xi_reference = backward(segments, end, self.frequency)
+        both = state.phase is Phase.DOUBLE_SUPPORT
+        gain = self.parameters.double_support_gain if both else self.parameters.dcm_gain
         zmp = self._supported(
             state,
-            zmp_reference + (1.0 + self.parameters.dcm_gain) * (xi - xi_reference),
-            both=state.phase is Phase.DOUBLE_SUPPORT,
+            zmp_reference + (1.0 + gain) * (xi - xi_reference),
+            both=both,
             on_ball=state.phase is Phase.SINGLE_SUPPORT and self._heel_is_up(state, command),
         )
 
         rate, swing = 1.0, state.swing
+        error = (forward(segments, xi, self.frequency) - end) / u
+        wanted = displacement + foothold_gain(self.frequency, timing.double_support) * error
+        place = (body.foot(other(state.stance)).position - state.ankle(state.stance)) / u
+        if both:
+            across, beyond = self.parameters.placement.late_lift_off(wanted, state.stance, place)
+            rate += min(timing.hurry * across, timing.lift_off_limit) + min(timing.hurry * beyond, timing.hurry_limit)
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
-            error = (forward(segments, xi, self.frequency) - end) / u
-            wanted = gait.displacement.left if stance_is_left else gait.displacement.right
-            wanted += foothold_gain(self.frequency, timing.double_support) * error
-            foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance)
+            foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance, place)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
             swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
 
@@ -315,7 +326,10 @@ class StepPlanner:
             other(state.stance): self._other_foot(state, command, swing, rate),
         }
         foothold_W = swing.foothold if swing is not None else state.ankle(other(state.stance))
-        next_state, height = self._height(state, command.forward)
+        lower = self.parameters.height.lower_for(
+            abs(foothold_W - state.ankle(state.stance)), abs(displacement), self.standing_com_height - self.ankle_height
+        )
+        next_state, height = self._height(state, command.forward, lower)
         next_state = replace(
             next_state,
             elapsed=state.elapsed + rate * self.period,
@@ -404,14 +418,16 @@ class StepPlanner:
         rockers = self.parameters.rockers
         return state.elapsed > self.parameters.timing.step - rockers.ball and rockers.rises(command.forward)
 
-    def _height(self, state: PlannerState, forward_speed: float) -> tuple[PlannerState, tuple[float, float, float]]:
+    def _height(
+        self, state: PlannerState, forward_speed: float, lower: float = 0.0
+    ) -> tuple[PlannerState, tuple[float, float, float]]:
         """Height of the centre of mass: its mean that follows the phase, and an arc over each stance leg."""
         law = self.parameters.height
         if state.phase is Phase.STAND:
             goal = law.standing * self.standing_com_height
         else:
-            goal = law.walking * self.standing_com_height - law.below_top(forward_speed)
-        height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period)
+            goal = law.walking * self.standing_com_height - law.below_top(forward_speed) - lower
+        height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period, lower > 0.0)
         above = law.arc(state.elapsed, self.parameters.timing.step, forward_speed)
         reference = (state.height + above[0], state.height_rate + above[1], acceleration + above[2])
         return replace(state, height=height, height_rate=rate), reference

@@ -62,8 +62,9 @@ def critical(stiffness: float, weight: float) -> TaskGains:
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(50.0, "", 0.0, 1e5)
-    """Weight of the centre of mass over ground; its acceleration follows from the zero-moment point alone."""
+    com_weight: float = quantity(300.0, "", 0.0, 1e5)
+    """Weight of the centre of mass over ground; its acceleration follows from the zero-moment point alone. A foot that
+    swings in a hurry asks for 60 m/s2, the centre of mass for 3: it must not be drawn along."""
 
     com_height: TaskGains = critical(100.0, 50.0)
     """Height of the centre of mass."""

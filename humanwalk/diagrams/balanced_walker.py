@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from humanwalk.body import SIDES
 from humanwalk.body.plant import kinematics_plant
+from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.diagrams.foot_contact import add_foot_contact, connect_spatial_forces
 from humanwalk.diagrams.human_plant import add_human_plant
 from humanwalk.diagrams.start import start_positions
@@ -20,6 +22,9 @@ from humanwalk.systems.whole_body_controller import WholeBodyController
 
 START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
+
+TASK_GAINS = 3
+"""What their noise is drawn from together with the scenario's seed."""
 
 
 def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
@@ -68,9 +73,10 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         "planner", GaitPlanner(model, walk.planner, scenario.gait.first_swing, walk.control_period)
     )
     posture = {f"{side}ArmElbowMotion": scenario.gait.arms.elbow_flexion for side in SIDES}
+    tasks = noisy_tasks(walk.whole_body, scenario.start.gain_noise, np.random.default_rng((scenario.seed, TASK_GAINS)))
     controller = builder.AddNamedSystem(
         "controller",
-        WholeBodyController(model, scenario.subject.skeleton, walk.whole_body, posture, walk.control_period),
+        WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period),
     )
     bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
     pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))

@@ -21,6 +21,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.plant import add_human, kinematics_plant
+from humanwalk.control.gain_noise import gain_factors
 from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import joint_gains
 from humanwalk.control.whole_body_qp import is_foot_posture
@@ -43,6 +44,9 @@ APPROXIMATIONS = {
     "lagged": DiscreteContactApproximation.kLagged,
     "similar": DiscreteContactApproximation.kSimilar,
 }
+
+ACTUATOR_GAINS = 2
+"""What their noise is drawn from together with the scenario's seed, so that it is independent of the start's."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +106,17 @@ def remove_visuals(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
 
 
 def human_gains(scenario: Scenario) -> tuple[Array, Array]:
-    """kp and kd of the scenario's actuators, shape (42,) each, with the inertia of neutral standing."""
+    """kp and kd of the scenario's actuators, shape (42,) each, with the inertia of neutral standing and its noise."""
     plant = kinematics_plant(scenario.subject)
     joints = JointMap.of(plant)
     if scenario.controller == "balanced":
-        return balanced_gains(joints.names, scenario.balanced)
-    inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
-    return joint_gains(joints.names, inertia, scenario.actuators)
+        kp, kd = balanced_gains(joints.names, scenario.balanced)
+    else:
+        inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
+        kp, kd = joint_gains(joints.names, inertia, scenario.actuators)
+    random = np.random.default_rng((scenario.seed, ACTUATOR_GAINS))
+    noise = scenario.start.gain_noise
+    return kp * gain_factors(kp.size, noise, random), kd * gain_factors(kd.size, noise, random)
 
 
 def balanced_gains(joint_names: Sequence[str], walk: BalancedWalkParameters) -> tuple[Array, Array]:

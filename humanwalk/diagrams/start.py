@@ -31,6 +31,10 @@ REACH_TOLERANCE_RAD = 0.02
 """How far it may be turned from its path [rad]."""
 
 
+RATES = 1
+"""What the seed is drawn from together with the scenario's own, so that rates and angles are independent."""
+
+
 def start_positions(scenario: Scenario, motion: RecordedMotion | None = None) -> Array:
     """Positions q of the plant at time zero, shape (49,): standing as the gait asks, soles on the ground.
 
@@ -80,6 +84,16 @@ def start_positions(scenario: Scenario, motion: RecordedMotion | None = None) ->
     )
     q[pelvis + 6] += scenario.start.pelvis_lift - lowest
     return q
+
+
+def start_velocities(scenario: Scenario) -> Array:
+    """Velocities v of the plant at time zero, shape (48,): 0 but for the noise on the joints' rates."""
+    plant = kinematics_plant(scenario.subject)
+    joints = JointMap.of(plant)
+    v = np.zeros(plant.num_velocities())
+    random = np.random.default_rng((scenario.seed, RATES))
+    v[joints.v] = scenario.start.rate_noise * random.standard_normal(joints.v.size)
+    return v
 
 
 def require_reachable(scenario: Scenario) -> None:

@@ -15,6 +15,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, System
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.control.joint_map import JointMap
 from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.start import start_velocities
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.replay import add_visualizer
@@ -116,6 +117,10 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
     diagram = builder.Build()
     diagram.set_name("humanwalk")
     simulator = Simulator(diagram)
+    if plant is not None and not scenario.follow.file:
+        plant.SetVelocities(
+            plant.GetMyMutableContextFromRoot(simulator.get_mutable_context()), start_velocities(scenario)
+        )
     if plant is not None and scenario.simulation.integrator == "cenic":
         ApplySimulatorConfig(
             SimulatorConfig(

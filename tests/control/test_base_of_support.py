@@ -33,5 +33,15 @@ def test_between_two_feet_it_may_be_anywhere_on_the_way():
     assert SUPPORT.supported(0.3 + 0.08j, 0.6 + 0.16j, 0.0) != pytest.approx(0.3 + 0.08j)
 
 
+@given(st.floats(-3.0, 3.0))
+def test_between_two_feet_an_error_sideways_counts_more_than_one_forward(heading):
+    u = cmath.exp(1j * heading)
+    stance, old = 0.5 * u, 0.16j * u
+    outward, back = (SUPPORT.supported(stance + error * u, stance, heading, old) for error in (-0.2 - 0.2j, -0.2))
+    # Behind and outward: only the front foot is outward.
+    assert abs(outward - stance) < SUPPORT.back + SUPPORT.half_width
+    assert abs(back - stance) > SUPPORT.back + SUPPORT.half_width
+
+
 def test_the_pendulum_stands_before_the_ankle():
     assert SUPPORT.middle_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.middle)

@@ -34,6 +34,30 @@ def test_in_standing_there_is_no_arc():
     assert HEIGHT.arc(0.2, STEP, 0.0) == pytest.approx((0.0, 0.0, 0.0))
 
 
+LEG = 0.91
+steps = st.floats(0.0, 1.2)
+
+
+@given(steps, steps)
+def test_the_longer_the_step_the_lower_the_body(apart, ordinary):
+    lower = HEIGHT.lower_for(apart, ordinary, LEG)
+    assert 0.0 <= lower <= HEIGHT.lower_for(apart + 0.05, ordinary, LEG)
+    if apart <= HEIGHT.stretch * max(ordinary, HEIGHT.easy):
+        assert lower == 0.0
+
+
+@given(st.floats(0.7, 1.2))
+def test_lowered_legs_reach_as_far_as_straight_ones_did_in_the_ordinary_step(apart):
+    bound = HEIGHT.stretch * 0.55
+    height = (LEG**2 - (bound / 2) ** 2) ** 0.5 - HEIGHT.lower_for(apart, 0.55, LEG)
+    assert (height**2 + (apart / 2) ** 2) ** 0.5 == pytest.approx(LEG)
+
+
+def test_it_goes_down_for_a_long_step_sooner_than_it_comes_up():
+    down, up = (HEIGHT.approach(0.95, 0.0, 0.90, 0.004, stretched)[1] for stretched in (True, False))
+    assert down < up < 0.0
+
+
 def test_the_mean_height_comes_to_its_goal_without_overshoot():
     height, rate = 0.97, 0.0
     for _ in range(1000):

@@ -1,4 +1,4 @@
-"""Footholds stay within reach and never cross the other leg; what is beyond calls for a hurry."""
+"""Footholds stay within reach and out of the other leg's way; what is beyond calls for a hurry."""
 
 import pytest
 from hypothesis import given
@@ -11,28 +11,62 @@ OUTWARD = {"Left": -1.0, "Right": 1.0}
 sides = st.sampled_from(["Left", "Right"])
 
 
-@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), sides)
-def test_a_foothold_is_within_reach_and_not_across(x, y, stance):
-    foothold, beyond = PLACEMENT.within_reach(complex(x, y), stance)
+places = st.builds(complex, st.floats(-1.0, 1.0), st.floats(-0.5, 0.5))
+
+
+@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), sides, places)
+def test_a_foothold_is_within_reach_and_not_in_the_other_leg(x, y, stance, place):
+    foothold, beyond = PLACEMENT.within_reach(complex(x, y), stance, place)
+    width = OUTWARD[stance] * foothold.imag
     assert abs(foothold.real) <= PLACEMENT.longest
-    assert PLACEMENT.narrowest <= OUTWARD[stance] * foothold.imag <= PLACEMENT.widest
+    assert -PLACEMENT.across <= width <= PLACEMENT.widest
+    if abs(foothold.real) <= PLACEMENT.beside:
+        assert width >= PLACEMENT.narrowest
     assert beyond >= 0.0
+
+
+@given(st.floats(0.16, 0.9), sides)
+def test_a_foot_crosses_only_once_it_has_passed_the_other(x, stance):
+    wanted = complex(x, -OUTWARD[stance])
+    widths = [
+        OUTWARD[stance] * PLACEMENT.within_reach(wanted, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)
+    ]
+    assert widths[:2] == [PLACEMENT.narrowest] * 2
+    assert PLACEMENT.narrowest >= widths[2] >= widths[3] == PLACEMENT.least_width(x)
+
+
+@given(st.floats(-1.0, 1.0), st.floats(0.0, 0.5))
+def test_the_farther_before_or_behind_the_narrower_it_may_be(x, farther):
+    assert PLACEMENT.least_width(abs(x) + farther) <= PLACEMENT.least_width(x) == PLACEMENT.least_width(-x)
 
 
 @given(st.floats(-0.6, 0.7), st.floats(0.1, 0.34), sides)
 def test_what_is_within_reach_is_kept_without_a_hurry(x, width, stance):
     wanted = complex(x, OUTWARD[stance] * width)
-    assert PLACEMENT.within_reach(wanted, stance) == (wanted, 0.0)
+    assert PLACEMENT.within_reach(wanted, stance, 0.0) == (wanted, 0.0)
 
 
 @pytest.mark.parametrize("wanted", [0.5 - 0.1j, 0.5 + 0.6j, 0.97 + 0.16j, -0.97 + 0.16j])
 def test_across_far_beside_far_ahead_and_far_behind_call_for_a_hurry(wanted):
-    assert PLACEMENT.within_reach(wanted, "Right")[1] > 0.0
+    assert PLACEMENT.within_reach(wanted, "Right", 0.0)[1] > 0.0
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-1.0, 1.5), sides)
+def test_a_foot_is_late_to_leave_when_it_is_wanted_across_or_wider_than_the_widest(x, width, stance):
+    beside = complex(-0.4, OUTWARD[stance] * 0.15)
+    across, beyond = PLACEMENT.late_lift_off(complex(x, OUTWARD[stance] * width), stance, beside)
+    assert across == pytest.approx(max(-width, 0.0))
+    assert beyond == pytest.approx(max(width - PLACEMENT.widest, 0.0))
+
+
+def test_a_foot_that_is_across_itself_takes_its_time_to_leave():
+    for side, outward in OUTWARD.items():
+        assert PLACEMENT.late_lift_off(1j * outward, side, complex(-0.4, -0.05 * outward)) == (0.0, 0.0)
 
 
 def test_both_sides_are_alike():
-    right, hurry_right = PLACEMENT.within_reach(0.4 + 0.9j, "Right")
-    left, hurry_left = PLACEMENT.within_reach(0.4 - 0.9j, "Left")
+    right, hurry_right = PLACEMENT.within_reach(0.4 + 0.9j, "Right", 0.2)
+    left, hurry_left = PLACEMENT.within_reach(0.4 - 0.9j, "Left", 0.2)
     assert right == left.conjugate()
     assert hurry_right == hurry_left
 

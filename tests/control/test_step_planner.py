@@ -135,13 +135,26 @@ def test_a_push_forward_makes_the_next_step_longer():
     assert foothold((4.1, 0.1 + 0j)) > foothold(None)
 
 
-def test_legs_are_never_asked_to_cross():
+def test_legs_are_never_asked_to_cross_beside_each_other():
     for push in (0.5j, -0.5j):
         for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.3), 5.0, (3.0, push)):
             if reference.phase is Phase.SINGLE_SUPPORT and reference.phase_time > 0.3:
                 outward = -1.0 if state.stance == "Left" else 1.0
-                width = outward * (reference.foothold - state.ankle(state.stance)).imag
-                assert width >= PARAMETERS.placement.narrowest - 0.02
+                place = (reference.foothold - state.ankle(state.stance)) / cmath.exp(1j * state.heading)
+                assert outward * place.imag >= PARAMETERS.placement.least_width(place.real) - 0.02
+
+
+def test_a_wide_step_lowers_the_body():
+    def lowest(push):
+        return min(r.com_height[0] for t, _, r, _ in pendulum_walk(planner(), walk_at(0.5), 5.0, push) if t > 3.0)
+
+    assert min(lowest((3.5, 0.8j)), lowest((3.5, -0.8j))) < lowest(None) - 0.01
+
+
+def test_the_path_begins_along_the_heading_that_is_given_not_along_the_feet():
+    turned = replace(standing(), right=foot(-0.0875j, yaw=0.1), left=foot(0.0875j, yaw=0.06))
+    assert planner().start(turned).heading == 0.0
+    assert planner().start(turned, heading=0.3).heading == 0.3
 
 
 def test_it_stops_and_stands_with_its_feet_side_by_side():

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from humanwalk.body import contact_spheres
-from humanwalk.diagrams.start import require_reachable, start_positions
+from humanwalk.diagrams.human_plant import human_gains
+from humanwalk.diagrams.start import require_reachable, start_positions, start_velocities
 from humanwalk.gait.foot_cycle import minimum_offset
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, StartParameters, load_scenario, shipped_scenarios
@@ -51,6 +52,29 @@ def test_noise_stays_within_the_ranges_and_has_the_size_that_is_asked_for(plant,
     inside = (calm - joints.lower > 0.1) & (joints.upper - calm > 0.1)
     assert inside.sum() > 20
     assert np.std(np.array(errors)[:, inside]) == pytest.approx(0.02, rel=0.1)
+
+
+def test_the_body_starts_at_rest_unless_rates_are_noisy(joints):
+    assert not start_velocities(Scenario(seed=3)).any()
+    rates = np.array([start_velocities(Scenario(seed=s, start=StartParameters(rate_noise=0.1))) for s in range(20)])
+    assert not rates[:, :6].any()
+    assert np.std(rates[:, joints.v]) == pytest.approx(0.1, rel=0.1)
+
+
+def test_noise_of_rates_gains_and_angles_is_independent(joints):
+    noise = StartParameters(joint_noise=1e-3, rate_noise=1e-3, gain_noise=1e-3)
+    calm, noisy = Scenario(seed=5), Scenario(seed=5, start=noise)
+    errors = np.array(
+        [
+            (start_positions(noisy) - start_positions(calm))[joints.q],
+            start_velocities(noisy)[joints.v],
+            *(np.log(after / before) for before, after in zip(human_gains(calm), human_gains(noisy), strict=True)),
+        ]
+    )
+    inside = (np.abs(errors[0]) > 0.0) & np.isfinite(errors).all(axis=0)
+    assert inside.sum() > 25
+    assert np.abs(np.corrcoef(errors[:, inside]) - np.eye(4)).max() < 0.5
+    np.testing.assert_allclose(np.std(errors[:, inside], axis=1), 1e-3, rtol=0.35)
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())

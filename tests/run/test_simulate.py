@@ -8,11 +8,12 @@ import pytest
 
 from humanwalk.body.contact import FRICTION, SOLE_PARTS
 from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.diagrams.start import start_velocities
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.quantity import ParameterError
 from humanwalk.run.measures import SHORTEST_PHASE_S, summarize, touchdowns
 from humanwalk.run.signals import TIME, matrix
-from humanwalk.run.simulate import simulate
+from humanwalk.run.simulate import prepare, simulate
 from humanwalk.run.walk import summary_table
 from humanwalk.scenario import load_scenario
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
@@ -257,6 +258,13 @@ def test_cenic_is_what_integrates_when_asked_for():
         reference.signals, ["pelvis.x_m", "pelvis.z_m"]
     )
     assert np.abs(difference).max() < 0.005
+
+
+def test_a_simulation_starts_with_the_velocities_of_the_scenario():
+    scenario = thesis(0.1, start__rate_noise="0.1")
+    prepared = prepare(scenario)
+    context = prepared.plant.GetMyContextFromRoot(prepared.simulator.get_context())
+    np.testing.assert_array_equal(prepared.plant.GetVelocities(context), start_velocities(scenario))
 
 
 def test_the_same_scenario_gives_the_same_record():

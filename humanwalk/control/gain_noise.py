@@ -1,0 +1,30 @@
+"""Gains that are not quite what they should be: nobody knows them of a real body."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from humanwalk.control.whole_body_qp import PrescribedGains, TaskGains, WholeBodyParameters
+
+Array = npt.NDArray[np.float64]
+
+
+def gain_factors(size: int, noise: float, random: np.random.Generator) -> Array:
+    """Random factors about 1, whose logarithm has the standard deviation `noise`; shape (size,)."""
+    factors: Array = np.exp(noise * random.standard_normal(size))
+    return factors
+
+
+def noisy_tasks(parameters: WholeBodyParameters, noise: float, random: np.random.Generator) -> WholeBodyParameters:
+    """The same parameters, stiffness and damping of each task times a random factor each; weights stay."""
+    changed: dict[str, Any] = {}
+    for field in fields(parameters):
+        gains = getattr(parameters, field.name)
+        if isinstance(gains, TaskGains | PrescribedGains):
+            stiffness, damping = gain_factors(2, noise, random)
+            changed[field.name] = replace(gains, stiffness=gains.stiffness * stiffness, damping=gains.damping * damping)
+    return replace(parameters, **changed)
