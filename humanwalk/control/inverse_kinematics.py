@@ -35,8 +35,8 @@ RANK_FLOOR = 1e-9
 """Singular value of the weighted J [m/rad] up to which a motion of the joints leaves the sole alone."""
 
 WELL_CONDITIONED = 0.01
-"""Singular value of the weighted J [m/rad] above which J J' is inverted. The SVD that nearly straight legs need takes,
-in the middle of a simulation, ten times as long."""
+"""Singular value of the weighted J [m/rad] above which J J' is inverted, which is quicker than an SVD; nearly straight
+legs need the SVD."""
 
 RESTART_GAIN = 0.5
 """Share of the residual below which the pose found by a second start replaces the first: less would not be worth
