@@ -31,7 +31,7 @@ class BaseOfSupport:
     front: float = quantity(0.2, "m", 0.0, 0.4)
     """And this near before it."""
 
-    half_width: float = quantity(0.04, "m", 0.0, 0.1)
+    half_width: float = quantity(0.03, "m", 0.0, 0.1)
     """And this near beside it."""
 
     sideways: float = quantity(3.0, "", 0.1, 30.0)

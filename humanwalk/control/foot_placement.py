@@ -54,17 +54,17 @@ class StepPlacement:
         """Least sideways distance of a foot that is x before the stance foot, or -x behind it [m]."""
         return max(self.narrowest - max(abs(x) - self.beside, 0.0), -self.across)
 
-    def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> tuple[float, float]:
-        """How far the wanted foothold is across the stance foot, and beyond the widest [m]: then the foot that is to go
-        there should be in the air already. Nothing where it stands across itself: it must come out from behind first.
+    def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> float:
+        """How far the wanted foothold is across the stance foot [m]: then the foot that is to go there should be in the
+        air already. Nothing where it stands across itself: it must come out from behind first.
 
         Args: see `within_reach`.
         """
         outward = -1.0 if stance == "Left" else 1.0
         width = outward * wanted.imag
         if outward * place.imag < self.uncrossed:
-            return 0.0, 0.0
-        return max(-width, 0.0), max(width - self.widest, 0.0)
+            return 0.0
+        return max(-width, 0.0)
 
     def within_reach(self, wanted: complex, stance: Side, place: complex) -> tuple[complex, float]:
         """The nearest foothold that legs reach without touching, and by how much the wanted one calls for a hurry [m].

@@ -314,8 +314,8 @@ class StepPlanner:
         wanted = displacement + foothold_gain(self.frequency, timing.double_support) * error
         place = (body.foot(other(state.stance)).position - state.ankle(state.stance)) / u
         if both:
-            across, beyond = self.parameters.placement.late_lift_off(wanted, state.stance, place)
-            rate += min(timing.hurry * across, timing.lift_off_limit) + min(timing.hurry * beyond, timing.hurry_limit)
+            across = self.parameters.placement.late_lift_off(wanted, state.stance, place)
+            rate += min(timing.hurry * across, timing.lift_off_limit)
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
             foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance, place)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
