@@ -27,35 +27,33 @@ class ComHeight:
     lowest: float = quantity(0.03, "s", -0.3, 0.3)
     """The height is lowest this long after a touchdown."""
 
-    stretch: float = quantity(1.15, "", 1.0, 10.0)
-    """A step longer than this times the ordinary one needs a lower body: else the leg does not reach the ground."""
+    free_reach: float = quantity(0.4, "m", 0.0, 1.0)
+    """A foothold this far before or behind the body needs no lower one: feet roll over heel and ball."""
 
-    easy: float = quantity(0.5, "m", 0.0, 2.0)
-    """A step that is not longer than this times `stretch` needs none, however short the ordinary one is."""
+    free_spread: float = quantity(0.1, "m", 0.0, 1.0)
+    """And this far beside it: about half the distance of the hips."""
 
     stretch_time: float = quantity(0.08, "s", 0.02, 2.0)
-    """Time constant with which the body goes down for such a step."""
+    """Time constant with which the body goes down for a foothold that is farther."""
 
     def below_top(self, speed: float) -> float:
         """How far the mean of the arcs is below their top at a forward speed [m]."""
         return self.amplitude * speed**2
 
-    def lower_for(self, apart: float, ordinary: float, leg: float) -> float:
-        """How much lower than in the ordinary walk the body must be between two feet [m].
+    def highest_for(self, reach: complex, leg: float, standing: float) -> float:
+        """The greatest height from which a straight leg reaches a foothold [m].
 
         Args:
-            apart: distance of the feet [m].
-            ordinary: that of the ordinary step [m].
-            leg: height of the body over straight legs that are closed [m].
+            reach: the foothold, seen from the centre of mass along the heading [m].
+            leg: distance of hip and ankle of a straight leg [m].
+            standing: height of the centre of mass in straight standing [m].
         """
-
-        def drop(distance: float) -> float:
-            return leg - math.sqrt(max(leg**2 - 0.25 * distance**2, 0.0))
-
-        return max(drop(apart) - drop(self.stretch * max(ordinary, self.easy)), 0.0)
+        forward = max(abs(reach.real) - self.free_reach, 0.0)
+        sideways = max(abs(reach.imag) - self.free_spread, 0.0)
+        return standing - leg + math.sqrt(max(leg**2 - forward**2 - sideways**2, 0.0))
 
     def approach(
-        self, height: float, rate: float, goal: float, dt: float, stretched: bool = False
+        self, height: float, rate: float, goal: float, dt: float, stretched: bool
     ) -> tuple[float, float, float]:
         """The mean height `dt` later, its rate, and its acceleration until then [m, m/s, m/s2]."""
         time = self.stretch_time if stretched else self.time

@@ -32,7 +32,7 @@ class StepPlacement:
     uncrossed: float = quantity(0.05, "m", -0.3, 0.3)
     """A foot that is less than this beside the other before it leaves takes its time to leave."""
 
-    widest: float = quantity(0.65, "m", 0.2, 1.0)
+    widest: float = quantity(0.85, "m", 0.2, 1.0)
     """Greatest sideways distance."""
 
     longest: float = quantity(1.0, "m", 0.2, 1.5)

@@ -79,6 +79,13 @@ def backward(segments: tuple[ZmpSegment, ...], xi: complex, frequency: float) ->
     return xi
 
 
+def carried(com: complex, xi: complex, zmp: complex, duration: float, frequency: float) -> complex:
+    """Centre of mass after a duration [s] over a zero-moment point that stays [m]."""
+    growth = math.exp(frequency * max(duration, 0.0))
+    half = 0.5 * (xi - zmp)
+    return zmp + (com - zmp - half) / growth + half * growth
+
+
 class HalfSteps(NamedTuple):
     """Something for the step that stands on the left foot and the one that stands on the right."""
 

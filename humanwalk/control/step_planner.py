@@ -10,6 +10,7 @@ Points of the ground plane are complex numbers x + iy [m]; headings are angles a
 from __future__ import annotations
 
 import cmath
+import math
 from dataclasses import dataclass, replace
 
 from humanwalk.body import SIDES, Side
@@ -25,6 +26,7 @@ from humanwalk.control.lipm import (
     PeriodicGait,
     ZmpSegment,
     backward,
+    carried,
     divergent_component,
     forward,
     natural_frequency,
@@ -33,6 +35,10 @@ from humanwalk.control.scalars import blend, wrapped
 from humanwalk.control.swing_foot import PlanarMotion, SwingParameters, SwingProfile
 from humanwalk.control.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference, other
 from humanwalk.quantity import quantity
+
+SHORT_STEP = 1.2
+"""A step is short if this many times its length is less than the way of the command meanwhile: the ordinary one, which
+ends early, is not."""
 
 TOES_RELAXED = 0.4
 """Share of the swing after which toes that were bent over the ground are straight again."""
@@ -149,6 +155,7 @@ class StepPlanner:
         parameters: see there.
         standing_com_height: height of the centre of mass in straight standing [m].
         ankle_height: height of the ankle of a flat foot [m].
+        leg_length: distance of hip and ankle of a straight leg [m].
         first_swing: the foot that swings first.
         period: time between two ticks [s].
     """
@@ -158,6 +165,7 @@ class StepPlanner:
         parameters: StepPlannerParameters,
         standing_com_height: float,
         ankle_height: float,
+        leg_length: float,
         first_swing: Side,
         period: float,
     ) -> None:
@@ -165,6 +173,7 @@ class StepPlanner:
         self.standing_com_height = standing_com_height
         self.frequency = natural_frequency(parameters.height.walking * standing_com_height)
         self.ankle_height = ankle_height
+        self.leg_length = leg_length
         self.first_swing = first_swing
         self.period = period
 
@@ -322,14 +331,16 @@ class StepPlanner:
             swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
 
         feet: dict[Side, FootReference] = {
-            state.stance: self._stance_foot(state, command),
+            state.stance: self._stance_foot(state, command, swing),
             other(state.stance): self._other_foot(state, command, swing, rate),
         }
         foothold_W = swing.foothold if swing is not None else state.ankle(other(state.stance))
-        lower = self.parameters.height.lower_for(
-            abs(foothold_W - state.ankle(state.stance)), abs(displacement), self.standing_com_height - self.ankle_height
-        )
-        next_state, height = self._height(state, command.forward, lower)
+        highest = math.inf
+        if swing is not None:
+            com = carried(body.com, xi, zmp, (timing.step - state.elapsed) / rate, self.frequency)
+            reach = (swing.foothold - com) / u
+            highest = self.parameters.height.highest_for(reach, self.leg_length, self.standing_com_height)
+        next_state, height = self._height(state, command.forward, highest)
         next_state = replace(
             next_state,
             elapsed=state.elapsed + rate * self.period,
@@ -382,13 +393,14 @@ class StepPlanner:
         old_end = old + gait.roll_end * cmath.exp(1j * state.old_heading)
         return (ZmpSegment(old_end, single.start, timing.double_support).rest(state.elapsed), single)
 
-    def _stance_foot(self, state: PlannerState, command: Command) -> FootReference:
+    def _stance_foot(self, state: PlannerState, command: Command, swing: Swing | None) -> FootReference:
         timing, rockers = self.parameters.timing, self.parameters.rockers
         if state.walked > 0 and state.elapsed < rockers.heel:
             return rockers.over_heel(state.heading)
-        if self._heel_is_up(state, command):
+        if swing is not None and self._heel_is_up(state, command):
             since = state.elapsed - (timing.step - rockers.ball)
-            return rockers.over_ball(since, timing.double_support, 1.0, state.heading, command.forward)
+            pace = self._pace(state, swing.foothold, command)
+            return rockers.over_ball(since, timing.double_support, 1.0, state.heading, pace)
         return FootReference(FootTask.FLAT, 1.0, state.heading)
 
     def _other_foot(self, state: PlannerState, command: Command, swing: Swing | None, rate: float) -> FootReference:
@@ -397,7 +409,8 @@ class StepPlanner:
             load = max(1.0 - state.elapsed / timing.double_support, 0.0)
             if rockers.rises(command.forward):
                 since = rockers.ball + state.elapsed
-                return rockers.over_ball(since, timing.double_support, load, state.old_heading, command.forward)
+                pace = self._pace(state, state.ankle(other(state.stance)), command)
+                return rockers.over_ball(since, timing.double_support, load, state.old_heading, pace)
             return FootReference(FootTask.FLAT, load, state.old_heading)
         progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
         profile = swing.profile.at(progress)
@@ -414,20 +427,32 @@ class StepPlanner:
             (swing.start_toes * (1.0 - relaxed), -swing.start_toes * slope),
         )
 
+    def _pace(self, state: PlannerState, foot: complex, command: Command) -> float:
+        """Forward speed that a step between the stance foot and another one fits to: that of the command, or less if it
+        is short. A foot that leaves from under the body must not be steep, or its toes catch the ground.
+        """
+        along = ((foot - state.ankle(state.stance)) * cmath.exp(-1j * state.heading)).real
+        return min(command.forward, SHORT_STEP * abs(along) / self.parameters.timing.step)
+
     def _heel_is_up(self, state: PlannerState, command: Command) -> bool:
         rockers = self.parameters.rockers
         return state.elapsed > self.parameters.timing.step - rockers.ball and rockers.rises(command.forward)
 
     def _height(
-        self, state: PlannerState, forward_speed: float, lower: float = 0.0
+        self, state: PlannerState, forward_speed: float, highest: float = math.inf
     ) -> tuple[PlannerState, tuple[float, float, float]]:
-        """Height of the centre of mass: its mean that follows the phase, and an arc over each stance leg."""
+        """Height of the centre of mass: its mean that follows the phase, and an arc over each stance leg.
+
+        The mean goes down to `highest` if it has to.
+        """
         law = self.parameters.height
         if state.phase is Phase.STAND:
             goal = law.standing * self.standing_com_height
         else:
-            goal = law.walking * self.standing_com_height - law.below_top(forward_speed) - lower
-        height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period, lower > 0.0)
+            goal = law.walking * self.standing_com_height - law.below_top(forward_speed)
+        stretched = goal > highest
+        goal = min(goal, highest)
+        height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period, stretched)
         above = law.arc(state.elapsed, self.parameters.timing.step, forward_speed)
         reference = (state.height + above[0], state.height_rate + above[1], acceleration + above[2])
         return replace(state, height=height, height_rate=rate), reference

@@ -71,10 +71,15 @@ class GaitPlanner(LeafSystem):
         super().__init__()
         self._dynamics = BodyDynamics(plant)
         standing = plant.CreateDefaultContext()
+        hip_height, ankle_height = (
+            plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2]
+            for body in ("Femur_Thigh", "Ankle")
+        )
         self._planner = StepPlanner(
             parameters,
             standing_com_height=plant.CalcCenterOfMassPositionInWorld(standing)[2],
-            ankle_height=plant.GetFrameByName("RightLeg_Ankle").CalcPoseInWorld(standing).translation()[2],
+            ankle_height=ankle_height,
+            leg_length=hip_height - ankle_height,
             first_swing=first_swing,
             period=period,
         )

@@ -34,23 +34,21 @@ def test_in_standing_there_is_no_arc():
     assert HEIGHT.arc(0.2, STEP, 0.0) == pytest.approx((0.0, 0.0, 0.0))
 
 
-LEG = 0.91
-steps = st.floats(0.0, 1.2)
+LEG, STANDING = 0.864, 0.97
+distances = st.floats(-0.5, 0.5)
 
 
-@given(steps, steps)
-def test_the_longer_the_step_the_lower_the_body(apart, ordinary):
-    lower = HEIGHT.lower_for(apart, ordinary, LEG)
-    assert 0.0 <= lower <= HEIGHT.lower_for(apart + 0.05, ordinary, LEG)
-    if apart <= HEIGHT.stretch * max(ordinary, HEIGHT.easy):
-        assert lower == 0.0
+@given(distances, distances)
+def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x, y):
+    highest = HEIGHT.highest_for(complex(x, y), LEG, STANDING)
+    assert highest <= STANDING
+    beyond = max(abs(x) - HEIGHT.free_reach, 0.0), max(abs(y) - HEIGHT.free_spread, 0.0)
+    hip = LEG + highest - STANDING
+    assert hip**2 + beyond[0] ** 2 + beyond[1] ** 2 == pytest.approx(LEG**2)
 
 
-@given(st.floats(0.7, 1.2))
-def test_lowered_legs_reach_as_far_as_straight_ones_did_in_the_ordinary_step(apart):
-    bound = HEIGHT.stretch * 0.55
-    height = (LEG**2 - (bound / 2) ** 2) ** 0.5 - HEIGHT.lower_for(apart, 0.55, LEG)
-    assert (height**2 + (apart / 2) ** 2) ** 0.5 == pytest.approx(LEG)
+def test_an_ordinary_step_needs_no_lower_body():
+    assert HEIGHT.highest_for(0.37 + 0.08j, LEG, STANDING) == STANDING
 
 
 def test_it_goes_down_for_a_long_step_sooner_than_it_comes_up():
@@ -61,6 +59,6 @@ def test_it_goes_down_for_a_long_step_sooner_than_it_comes_up():
 def test_the_mean_height_comes_to_its_goal_without_overshoot():
     height, rate = 0.97, 0.0
     for _ in range(1000):
-        height, rate, _ = HEIGHT.approach(height, rate, 0.93, 0.004)
+        height, rate, _ = HEIGHT.approach(height, rate, 0.93, 0.004, False)
         assert height >= 0.93 - 1e-6
     assert height == pytest.approx(0.93, abs=1e-4)

@@ -12,6 +12,7 @@ from humanwalk.control.lipm import (
     PeriodicGait,
     ZmpSegment,
     backward,
+    carried,
     divergent_component,
     forward,
     natural_frequency,
@@ -47,6 +48,15 @@ def test_forward_solves_the_differential_equation(segment, xi, frequency):
         slope_end = frequency * (y + dt * slope - segment.at((i + 1) * dt))
         y += 0.5 * dt * (slope + slope_end)
     assert segment.forward(xi, frequency) == pytest.approx(y, abs=1e-4)
+
+
+@given(points, points, points, st.floats(0.0, 0.5), frequencies)
+def test_the_centre_of_mass_is_carried_after_the_dcm(com, xi, zmp, t, frequency):
+    h = 1e-5
+    before, here, after = (carried(com, xi, zmp, t + d, frequency) for d in (0.0, h, 2.0 * h))
+    dcm = ZmpSegment(zmp, zmp, t + h).forward(xi, frequency)
+    assert carried(com, xi, zmp, 0.0, frequency) == pytest.approx(com)
+    assert here + (after - before) / (2.0 * h) / frequency == pytest.approx(dcm, abs=1e-5)
 
 
 @given(st.builds(ZmpSegment, points, points, st.floats(0.05, 1.0)), points, frequencies, st.floats(0.0, 1.0))

@@ -15,11 +15,12 @@ from humanwalk.control.walking_reference import BodyState, FootState, FootTask, 
 
 PERIOD = 0.004
 ANKLE = 0.068
+LEG = 0.864
 PARAMETERS = StepPlannerParameters()
 
 
 def planner(**changes):
-    return StepPlanner(replace(PARAMETERS, **changes), 0.98, ANKLE, "Right", PERIOD)
+    return StepPlanner(replace(PARAMETERS, **changes), 0.98, ANKLE, LEG, "Right", PERIOD)
 
 
 def foot(position, force=350.0, **changes):
@@ -175,7 +176,7 @@ def test_the_zero_moment_point_stays_over_the_stance_foot():
 
 def test_durations_do_not_depend_on_the_control_period():
     def landings(period):
-        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, "Right", period)
+        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period)
         body, state, times = standing(), None, []
         state = plan.start(body)
         for tick in range(round(4.0 / period)):
