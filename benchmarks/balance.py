@@ -3,6 +3,7 @@
     python benchmarks/balance.py speeds --duration 60
     python benchmarks/balance.py seeds --duration 30 --speeds 1.0 1.4 --seeds 20
     python benchmarks/balance.py pushes --impulses 30 60
+    python benchmarks/balance.py pushes --later 0.1
     python benchmarks/balance.py paths
     python benchmarks/balance.py invariance --duration 12
 
@@ -97,9 +98,10 @@ def seeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 def pushes(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """Walks once to the time of each push, and from there again for every impulse and direction."""
-    walker = make_diagram(walk(1.0, PUSH_TIMES[-1]))
+    times = [time + args.later for time in PUSH_TIMES]
+    walker = make_diagram(walk(1.0, times[-1]))
     before = Simulator(walker)
-    for time in PUSH_TIMES:
+    for time in times:
         before.AdvanceTo(time)
         for impulse in args.impulses:
             for eighth in args.eighths:
@@ -175,6 +177,7 @@ def main() -> None:
     parser.add_argument("--speeds", type=float, nargs="+", default=[0.3, 0.7, 1.0, 1.2, 1.4])
     parser.add_argument("--impulses", type=float, nargs="+", default=[30.0])
     parser.add_argument("--eighths", type=int, nargs="+", default=list(range(8)), help="directions of pushes [45 deg]")
+    parser.add_argument("--later", type=float, default=0.0, help="all pushes by this much later [s]")
     parser.add_argument(
         "--scenarios", nargs="+", default=["stand", "start_stop", "turn", "corner", "sideways", "backward"]
     )

@@ -189,3 +189,15 @@ def test_durations_do_not_depend_on_the_control_period():
 
     coarse, fine = landings(0.004), landings(0.002)
     assert len(coarse) == len(fine) > 3
+
+
+def test_a_foot_leaves_flatter_from_a_short_step_than_from_an_ordinary_one():
+    pitches = {}
+    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.5 + 0j)):
+        behind = reference.foot(other(state.stance))
+        if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and behind.task is FootTask.HEEL_OFF:
+            pitches[abs((state.right - state.left).real)] = behind.pitch[0]
+    shortest, longest = min(pitches), max(pitches)
+    assert shortest < 0.5 * longest
+    assert pitches[shortest] < 0.6 * pitches[longest]
+    assert max(pitches.values()) <= PARAMETERS.rockers.pitch
