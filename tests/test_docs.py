@@ -65,10 +65,11 @@ def test_the_moving_picture_is_light_enough_for_a_first_screen():
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-def test_the_tables_of_performance_are_those_of_the_results():
-    page = runpy.run_path(str(DOCS.parent / "benchmarks" / "performance_page.py"))
-    text = page["PAGE"].read_text(encoding="utf-8")
-    assert page["filled"](text) == text, "run benchmarks/performance_page.py"
+@pytest.mark.parametrize("name", ["performance", "balance"])
+def test_the_tables_of_a_page_are_those_of_the_results(name):
+    page = DOCS / f"{name}.md"
+    filled = runpy.run_path(str(DOCS.parent / "benchmarks" / "pages.py"))["filled"]
+    assert filled(page) == page.read_text(encoding="utf-8"), "run benchmarks/pages.py"
 
 
 @pytest.mark.parametrize("layer", ["body", "gait", "control", "systems", "diagrams"])

@@ -1,6 +1,6 @@
-"""Puts the tables of benchmarks/results into docs/performance.md, between its marks.
+"""Puts the tables of benchmarks/results into docs/performance.md and docs/balance.md, between their marks.
 
-python benchmarks/performance_page.py
+python benchmarks/pages.py
 """
 
 import json
@@ -15,7 +15,7 @@ from humanwalk.run.files import write_text
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
-PAGE = ROOT / "docs" / "performance.md"
+DOCS = ROOT / "docs"
 BUSY = 1.5
 """Load above which more than the measured process was running."""
 
@@ -33,8 +33,8 @@ def measured_on(machine: dict[str, Any]) -> str:
     )
 
 
-def load(name: str) -> dict[str, Any]:
-    data: dict[str, Any] = json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+def load(name: str) -> Any:
+    data = json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
     return data
 
 
@@ -146,21 +146,98 @@ def mujoco() -> str:
     )
 
 
-SECTIONS: dict[str, Callable[[], str]] = {
-    section.__name__: section for section in (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
+def balance_speeds() -> str:
+    rows = sorted(load("balance_speeds"), key=lambda row: row["run"])
+    return table(
+        ["commanded", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps", "failed programs"],
+        [[f"{row['run'].split()[-1]} m/s", *_walked(row), str(row["steps"]), str(row["qp_failures"])] for row in rows],
+    )
+
+
+def _walked(row: dict[str, Any]) -> list[str]:
+    cost = _number(row["cost_of_transport"], ".2f")
+    return [_end(row), f"{row['speed_m_s']:.3f}", f"{100 * row['largest_y_m']:.1f}", cost]
+
+
+def _end(row: dict[str, Any]) -> str:
+    return f"{row['end']} at {row['time_s']:g} s"
+
+
+def balance_paths() -> str:
+    rows = [[f"`{row['run']}`", _end(row), f"{100 * row['off_path_m']:.1f}"] for row in load("balance_paths")]
+    return table(["scenario", "end", "off the path cm"], rows)
+
+
+def balance_pushes() -> str:
+    return "\n\n".join(_pushes(name) for name in ("balance_pushes", "balance_pushes_later", "balance_pushes_60"))
+
+
+def _pushes(name: str) -> str:
+    ends: dict[tuple[str, str], str] = {}
+    for row in load(name):
+        words = row["run"].split()
+        impulse, direction, time = words[1], words[5], words[8]
+        ends[time, direction] = (
+            "up" if row["end"] == "completed" else f"FALLS after {row['time_s'] - float(time):.1f} s"
+        )
+    directions = sorted({direction for _, direction in ends}, key=float)
+    times = sorted({time for time, _ in ends}, key=float)
+    rows = [[f"{time} s", *(ends[time, direction] for direction in directions)] for time in times]
+    survived = sum(end == "up" for end in ends.values())
+    headings = [f"{impulse} N s at", *(f"{direction}°" for direction in directions)]
+    return f"**{survived} of {len(ends)}** pushes of {impulse} N s survived:\n\n" + table(headings, rows)
+
+
+def balance_seeds() -> str:
+    rows = load("balance_seeds")
+    lines = []
+    for speed in sorted({row["run"].split()[1] for row in rows}):
+        walks = [row for row in rows if row["run"].split()[1] == speed]
+        up = [row for row in walks if row["end"] == "completed"]
+        seeds = ", ".join(row["run"].split()[-1] for row in walks)
+        beside = max(abs(row["final_y_m"]) for row in up)
+        speeds = [row["speed_m_s"] for row in up]
+        costs = [row["cost_of_transport"] for row in up]
+        lines.append(
+            [
+                f"{speed} m/s",
+                seeds,
+                f"**{len(up)} of {len(walks)}**",
+                f"{min(speeds):.3f} to {max(speeds):.3f}",
+                f"{100 * beside:.1f}",
+                f"{min(costs):.2f} to {max(costs):.2f}",
+            ]
+        )
+    return table(
+        ["commanded", "seeds", "last 30 s", "speed m/s", "at most beside the line at the end cm", "cost"], lines
+    )
+
+
+def balance_invariance() -> str:
+    rows = [[row["run"], *_walked(row), str(row["steps"])] for row in load("balance_invariance")]
+    return table(["", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps"], rows)
+
+
+PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
+BALANCE = (balance_speeds, balance_paths, balance_pushes, balance_seeds, balance_invariance)
+PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
+    DOCS / "performance.md": PERFORMANCE,
+    DOCS / "balance.md": BALANCE,
 }
 
 
-def filled(page: str) -> str:
+def filled(page: Path) -> str:
     """The page with the tables of the results."""
-    for name, section in SECTIONS.items():
-        marks = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+    text = page.read_text(encoding="utf-8")
+    for section in PAGES[page]:
+        marks = re.compile(rf"(<!-- {section.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
         content = f"\n{section()}\n\n"
-        page, found = marks.subn(lambda match, content=content: match[1] + content + match[2], page)
+        text, found = marks.subn(lambda match, content=content: match[1] + content + match[2], text)
         if found != 1:
-            raise ValueError(f"{PAGE}: needs one mark <!-- {name} -->, has {found}")
-    return page
+            raise ValueError(f"{page}: needs one mark <!-- {section.__name__} -->, has {found}")
+    return text
 
 
 if __name__ == "__main__":
-    write_text(PAGE, filled(PAGE.read_text(encoding="utf-8")))
+    for page in PAGES:
+        write_text(page, filled(page))
