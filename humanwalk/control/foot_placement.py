@@ -44,6 +44,9 @@ class StepPlacement:
     hurry_wider: float = quantity(0.35, "m", 0.2, 1.0)
     """The clock hurries when that foothold is farther sideways than this."""
 
+    passing: float = quantity(0.12, "m", 0.0, 0.3)
+    """A foot that comes from behind the other one passes it at this distance."""
+
     smoothing: float = quantity(0.02, "s", 0.0, 0.2)
     """Time constant of the foothold."""
 
@@ -53,6 +56,19 @@ class StepPlacement:
     def least_width(self, x: float) -> float:
         """Least sideways distance of a foot that is x before the stance foot, or -x behind it [m]."""
         return max(self.narrowest - max(abs(x) - self.beside, 0.0), -self.across)
+
+    def way_round(self, place: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
+        """Where a foot that would run into the other must pass it, and the share of its way until there; else None.
+
+        Args:
+            place: where the swinging foot is.
+            foothold: where it is going.
+            stance: the foot that carries.
+        """
+        outward = -1.0 if stance == "Left" else 1.0
+        if outward * place.imag >= self.narrowest or place.real * foothold.real >= 0.0:
+            return None
+        return 1j * outward * self.passing, place.real / (place.real - foothold.real)
 
     def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> float:
         """How far the wanted foothold is across the stance foot [m]: then the foot that is to go there should be in the

@@ -359,7 +359,14 @@ class StepPlanner:
             swing = replace(swing, foothold=swing.foothold + share * (goal - swing.foothold))
         pace = command.speed * cmath.exp(1j * state.heading)
         landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
-        return replace(swing, motion=swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit))
+        motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
+        stance, u = state.ankle(state.stance), cmath.exp(1j * state.heading)
+        foot, foothold = (swing.motion.position - stance) / u, (swing.foothold - stance) / u
+        if (way_round := placement.way_round(foot, foothold, state.stance)) is not None:
+            passing, share = PlanarMotion(stance + u * way_round[0]), way_round[1]
+            aside = swing.motion.towards(passing, share * remaining / rate, self.period, law.jerk_limit)
+            motion = motion.with_sideways_of(aside, state.heading)
+        return replace(swing, motion=motion)
 
     def _gait(self, state: PlannerState, command: Command) -> PeriodicGait:
         """The periodic walk that is wanted now: as commanded, and a little towards the path."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,19 @@ class PlanarMotion:
             self.position + dt * (self.velocity + dt * (self.acceleration / 2.0 + dt * jerk / 6.0)),
             self.velocity + dt * (self.acceleration + dt * jerk / 2.0),
             self.acceleration + dt * jerk,
+        )
+
+    def with_sideways_of(self, other: PlanarMotion, heading: float) -> PlanarMotion:
+        """This motion along a heading [rad], and another's across it."""
+        u = cmath.exp(1j * heading)
+
+        def mixed(along: complex, across: complex) -> complex:
+            return u * complex((along / u).real, (across / u).imag)
+
+        return PlanarMotion(
+            mixed(self.position, other.position),
+            mixed(self.velocity, other.velocity),
+            mixed(self.acceleration, other.acceleration),
         )
 
 

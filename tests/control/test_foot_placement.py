@@ -73,3 +73,15 @@ def test_both_sides_are_alike():
 def test_without_double_support_the_foothold_follows_the_error_itself():
     assert foothold_gain(3.2, 1e-6) == pytest.approx(1.0, abs=1e-5)
     assert foothold_gain(3.2, 0.2) > foothold_gain(3.2, 0.1) > 1.0
+
+
+@given(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), sides)
+def test_only_a_foot_that_would_run_into_the_other_goes_round_it(x, width, goal, stance):
+    outward = OUTWARD[stance]
+    way_round = PLACEMENT.way_round(complex(x, outward * width), complex(goal, outward * 0.16), stance)
+    if width >= PLACEMENT.narrowest or x * goal >= 0.0:
+        assert way_round is None
+    else:
+        place, share = way_round
+        assert place == complex(0.0, outward * PLACEMENT.passing)
+        assert x + share * (goal - x) == pytest.approx(0.0, abs=1e-9)

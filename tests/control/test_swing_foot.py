@@ -1,5 +1,6 @@
 """The foot in the air goes on as it left, arrives where and when it should, and bounds its jerk."""
 
+import cmath
 from itertools import pairwise
 
 import pytest
@@ -100,3 +101,13 @@ def test_rates_are_derivatives(progress):
     dt = 2.0 * h * profile.duration
     assert (after.height - before.height) / dt == pytest.approx(here.height_rate, abs=1e-3)
     assert (after.pitch - before.pitch) / dt == pytest.approx(here.pitch_rate, abs=1e-3)
+
+
+@given(st.floats(-3.1, 3.1))
+def test_a_motion_with_the_sideways_of_another_has_both(heading):
+    u = cmath.exp(1j * heading)
+    along, across = PlanarMotion(1.0 + 2.0j, 3.0, 4.0j), PlanarMotion(-1.0 + 0.5j, 1.0j, 2.0)
+    mixed = along.with_sideways_of(across, heading)
+    for got, x, y in zip(*(vars(motion).values() for motion in (mixed, along, across)), strict=True):
+        assert (got / u).real == pytest.approx((x / u).real)
+        assert (got / u).imag == pytest.approx((y / u).imag)
