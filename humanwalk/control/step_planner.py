@@ -383,7 +383,8 @@ class StepPlanner:
             displacement=HalfSteps(left=along - half, right=along + half),
             turn=turn,
             roll_start=0.0,
-            roll_end=p.support.roll * command.speed,
+            # Who goes backward sets his feet flat.
+            roll_end=p.support.roll * complex(max(command.forward, 0.0), command.sideways),
             double_support=timing.double_support,
             single_support=timing.step - timing.double_support,
         )
