@@ -169,7 +169,7 @@ def balance_paths() -> str:
 
 
 def balance_pushes() -> str:
-    return "\n\n".join(_pushes(name) for name in ("balance_pushes", "balance_pushes_later", "balance_pushes_60"))
+    return "\n\n".join(_pushes(name) for name in ("balance_pushes", "balance_pushes_60"))
 
 
 def _pushes(name: str) -> str:
