@@ -47,6 +47,9 @@ class StepPlacement:
     passing: float = quantity(0.12, "m", 0.0, 0.3)
     """A foot that comes from behind the other one passes it at this distance."""
 
+    reach: float = quantity(0.45, "m", 0.1, 1.0)
+    """Greatest distance of a foothold before or behind the centre of mass as it will be then."""
+
     smoothing: float = quantity(0.02, "s", 0.0, 0.2)
     """Time constant of the foothold."""
 
@@ -103,6 +106,9 @@ class StepPlacement:
         narrowest = max(self.least_width(x), self.least_width(place.real)) if has_passed else self.narrowest
         foothold = complex(x, outward * clip(width, narrowest, self.widest))
         return foothold, beyond
+
+    def before_body(self, foothold: complex, com: complex) -> complex:
+        return complex(min(max(foothold.real, com.real - self.reach), com.real + self.reach), foothold.imag)
 
 
 def foothold_gain(frequency: float, double_support: float) -> float:

@@ -315,7 +315,7 @@ class StepPlanner:
             state,
             zmp_reference + (1.0 + gain) * (xi - xi_reference),
             both=both,
-            on_ball=state.phase is Phase.SINGLE_SUPPORT and self._heel_is_up(state, command),
+            on_ball=state.swing is not None and self._heel_is_up(state, command, state.swing),
         )
 
         rate, swing = 1.0, state.swing
@@ -328,6 +328,9 @@ class StepPlanner:
         if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
             foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance, place)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
+            com = carried(body.com, xi, zmp, (timing.step - state.elapsed) / rate, self.frequency)
+            com = (com - state.ankle(state.stance)) / u
+            foothold = self.parameters.placement.before_body(foothold, com)
             swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
 
         feet: dict[Side, FootReference] = {
@@ -405,9 +408,9 @@ class StepPlanner:
         timing, rockers = self.parameters.timing, self.parameters.rockers
         if state.walked > 0 and state.elapsed < rockers.heel:
             return rockers.over_heel(state.heading)
-        if swing is not None and self._heel_is_up(state, command):
+        if swing is not None and self._heel_is_up(state, command, swing):
             since = state.elapsed - (timing.step - rockers.ball)
-            pace = self._pace(state, swing.foothold, command)
+            pace = self._pace(state, swing.foothold - state.ankle(state.stance), command)
             return rockers.over_ball(since, timing.double_support, 1.0, state.heading, pace)
         return FootReference(FootTask.FLAT, 1.0, state.heading)
 
@@ -415,9 +418,9 @@ class StepPlanner:
         timing, rockers = self.parameters.timing, self.parameters.rockers
         if swing is None:
             load = max(1.0 - state.elapsed / timing.double_support, 0.0)
-            if rockers.rises(command.forward):
+            pace = self._pace(state, state.ankle(state.stance) - state.ankle(other(state.stance)), command)
+            if rockers.rises(pace):
                 since = rockers.ball + state.elapsed
-                pace = self._pace(state, state.ankle(other(state.stance)), command)
                 return rockers.over_ball(since, timing.double_support, load, state.old_heading, pace)
             return FootReference(FootTask.FLAT, load, state.old_heading)
         progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
@@ -435,16 +438,18 @@ class StepPlanner:
             (swing.start_toes * (1.0 - relaxed), -swing.start_toes * slope),
         )
 
-    def _pace(self, state: PlannerState, foot: complex, command: Command) -> float:
-        """Forward speed that a step between the stance foot and another one fits to: that of the command, or less if it
-        is short. A foot that leaves from under the body must not be steep, or its toes catch the ground.
-        """
-        along = ((foot - state.ankle(state.stance)) * cmath.exp(-1j * state.heading)).real
-        return min(command.forward, SHORT_STEP * abs(along) / self.parameters.timing.step)
+    def _pace(self, state: PlannerState, step: complex, command: Command) -> float:
+        """Forward speed that a step [m] fits to: that of the command, or less if the step is short, or backward.
 
-    def _heel_is_up(self, state: PlannerState, command: Command) -> bool:
-        rockers = self.parameters.rockers
-        return state.elapsed > self.parameters.timing.step - rockers.ball and rockers.rises(command.forward)
+        A foot that leaves from under the body must not be steep, or its toes catch the ground.
+        """
+        along = (step * cmath.exp(-1j * state.heading)).real
+        return min(command.forward, SHORT_STEP * along / self.parameters.timing.step)
+
+    def _heel_is_up(self, state: PlannerState, command: Command, swing: Swing) -> bool:
+        timing, rockers = self.parameters.timing, self.parameters.rockers
+        pace = self._pace(state, swing.foothold - state.ankle(state.stance), command)
+        return state.elapsed > timing.step - rockers.ball and rockers.rises(pace)
 
     def _height(
         self, state: PlannerState, forward_speed: float, highest: float = math.inf

@@ -72,7 +72,7 @@ class WholeBodyParameters:
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
     """Feet on the ground do not move."""
 
-    sinking_speed: float = quantity(0.5, "m/s", 0.0, 2.0)
+    sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
     """A foot that should stand and is still in the air goes down this fast."""
 
     heel_strike: TaskGains = critical(600.0, 1000.0)
