@@ -198,7 +198,7 @@ class StepPlanner:
         state = self._transition(state, body, command)
         if state.phase in (Phase.STAND, Phase.WEIGHT_SHIFT):
             return self._stand(state, body, command, xi)
-        return self._step(state, body, command, xi)
+        return self._step(self._settled(state, body), body, command, xi)
 
     # Phases.
 
@@ -265,6 +265,13 @@ class StepPlanner:
             height_rate=state.height_rate,
             walked=state.walked + 1 if moving else 0,
         )
+
+    def _settled(self, state: PlannerState, body: BodyState) -> PlannerState:
+        """A stance foot that has not come to the ground yet will stand where it is now, not where its time was over."""
+        foot, timing = body.foot(state.stance), self.parameters.timing
+        if foot.force >= timing.touchdown_force or state.elapsed > self.parameters.rockers.heel or state.walked == 0:
+            return state
+        return replace(state, right=foot.position) if state.stance == "Right" else replace(state, left=foot.position)
 
     # Standing.
 

@@ -30,6 +30,9 @@ class SwingParameters:
     lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
 
+    clearance: float = quantity(0.09, "m", 0.0, 0.3)
+    """The ankle rises at least this far above where it is in standing: a foot that leaves flat would scuff."""
+
     toe_up: float = quantity(0.26, "rad s/m", 0.0, 0.6)
     """Pitch of the foot at heel strike, per speed forward up to `BRISKEST`."""
 
@@ -139,7 +142,7 @@ class SwingProfile:
             duration: of the swing [s].
             parameters: its shape.
         """
-        apex = height + parameters.lift
+        apex = max(height + parameters.lift, ground + parameters.clearance)
         heights = np.array(
             (height, *(ground + np.array(HEIGHT_SHAPE) * (apex - ground)), ground - parameters.landing_depth)
         )
