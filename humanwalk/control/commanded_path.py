@@ -106,6 +106,10 @@ class PathFollowing:
     pace_gain: float = quantity(0.3, "1/s", 0.0, 2.0)
     """Speed along the path per distance behind the commanded place: so the mean speed is the commanded one."""
 
+    behind: float = quantity(0.25, "s", 0.0, 1.0)
+    """So far behind the commanded place is the walker's own: a step keeps the speed that was commanded as it began, half
+    a step ago in the mean. Who ran after that too would overshoot where the command stops."""
+
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
     """Greatest such speed."""
 
@@ -121,8 +125,9 @@ class PathFollowing:
         aside = (beside.position - walker) / cmath.exp(1j * beside.heading)
         correction = _bounded(self.lane_gain * aside, self.lane_speed_limit)
         if command.speed:
-            pace = self.pace_gain * (path.end.way - beside.way)
-            correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.speed / abs(command.speed)
+            speed = abs(command.speed)
+            pace = self.pace_gain * (path.end.way - beside.way - self.behind * speed)
+            correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.speed / speed
         return correction
 
     def leashed(self, path: CommandedPath, beside: Place) -> CommandedPath:
