@@ -89,12 +89,12 @@ class AsperityParameters:
                     )
 
 
-def stiffness(parameters: AsperityParameters, area: Array) -> Array:
+def point_stiffness(parameters: AsperityParameters, area: Array) -> Array:
     """K of n points with an area [m2] [N/m], shape (3 n,): x and y of each point first, then the normals."""
     return _of_points(parameters.spring_stiffness * area, parameters.normal_stiffness * area)
 
 
-def damping(parameters: AsperityParameters, area: Array, rising: Array | bool = False) -> Array:
+def point_damping(parameters: AsperityParameters, area: Array, rising: Array | bool = False) -> Array:
     """C of points, likewise [N s/m]; along the normal it counts by its separation factor where they rise."""
     factor = np.where(rising, parameters.separation_damping, 1.0)
     return _of_points(parameters.velocity_stiffness * area, factor * parameters.normal_damping * area)

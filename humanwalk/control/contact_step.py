@@ -8,6 +8,10 @@ bodies that touch (D: what the joints add implicitly), their velocities V, and t
 
 is one linear system for V(t + h); a is what everything but the contact did in the last step. The law with all its
 bounds is then evaluated at that velocity.
+
+Feet whose bodies are connected by joints move in fewer ways than 6 a body. So the unknown is not V(t + h) but
+z = h Z' (F(t - h) - F), with G = Z Z' and a column of Z for each way: 16 numbers for the six bodies of the feet, and a
+matrix 1 / h + Z' B Z that is symmetric and positive.
 """
 
 from __future__ import annotations
@@ -26,12 +30,12 @@ from scipy.linalg.lapack import dposv, dpstrf
 from humanwalk.control.asperity import (
     ZERO,
     AsperityParameters,
-    damping,
     friction_bound,
     friction_force,
     normal_force,
+    point_damping,
+    point_stiffness,
     share,
-    stiffness,
 )
 from humanwalk.control.ground import Ground
 from humanwalk.control.ground_force import friction_use, moments
@@ -141,7 +145,8 @@ class Contacts(NamedTuple):
         b, V = len(self.p_WB), self.memory.V.reshape(-1, 1, 6)
         velocity = V[..., 3:] + np.cross(V[..., :3], self.p_WQ.reshape(b, -1, 3) - self.p_WB[:, None])
         along = np.matvec(self.R_SW, velocity.reshape(-1, 3))[:, :2]
-        return np.hypot(*along.T) * (self.normal > 0.0)
+        slip: Array = np.hypot(*along.T) * (self.normal > 0.0)
+        return slip
 
     def __deepcopy__(self, memo: object) -> Self:
         """Itself: Drake copies abstract values often, and nothing in here ever changes."""
@@ -164,7 +169,8 @@ class ContactStep:
 
     def __init__(self, parameters: AsperityParameters, ground: Ground, area: Array, step: float, rank: int) -> None:
         self._parameters, self._ground, self._area = parameters, ground, area.ravel()
-        K, C, (b, k), n = stiffness(parameters, self._area), damping(parameters, self._area), area.shape, area.size
+        K, C = point_stiffness(parameters, self._area), point_damping(parameters, self._area)
+        (b, k), n = area.shape, area.size
         self._stiffness, self._at_rest, self._impedance = K, step * K, C + step * K
         self._spring = parameters.spring_stiffness * self._area
         self._pressure = np.concatenate((np.zeros(2 * n), parameters.normal_pressure * self._area))
@@ -202,7 +208,7 @@ class ContactStep:
         impedance = self._impedance
         v0, e0 = self._unloaded(e, impedance)
 
-        # How much faster than v0 the points would get without contact, and what each of z = h Z' F takes off.
+        # How much faster than v0 the points would get with the last step's forces, and how much each of z slows them.
         faster = X.dot(V + V - memory.V) - v0
         Y = X.dot(mobility)
         z = last = memory.F.dot(mobility)
@@ -217,7 +223,7 @@ class ContactStep:
             short = Y.dot(z) - faster
             if parameters.separation_damping != 1.0:
                 v = v0 - short
-                impedance = self._at_rest + damping(parameters, self._area, v[2 * n :] > 0.0)
+                impedance = self._at_rest + point_damping(parameters, self._area, v[2 * n :] > 0.0)
                 v0, e0 = self._unloaded(e, impedance)
                 short, faster = v0 - v, faster + (v - v0) + short
 

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from humanwalk.control.asperity import (
     AsperityParameters,
     Knot,
-    damping,
     friction_bound,
     friction_force,
     normal_force,
-    stiffness,
+    point_damping,
+    point_stiffness,
 )
 from humanwalk.quantity import ParameterError, check
 
@@ -28,14 +28,14 @@ PLANAR = st.complex_numbers(max_magnitude=1.0, allow_nan=False, allow_infinity=F
 
 def normal(law, depth, rate):
     height, rising = np.array([-depth]), np.array([-rate])
-    linear = -stiffness(law, AREA)[2:] * height - damping(law, AREA, rising > 0.0)[2:] * rising
+    linear = -point_stiffness(law, AREA)[2:] * height - point_damping(law, AREA, rising > 0.0)[2:] * rising
     return float(normal_force(law, law.normal_pressure * AREA + linear, height)[0])
 
 
 def friction(law, stretch, velocity, bound):
     stretch, velocity = np.array([stretch]), np.array([velocity])
-    spring = stiffness(law, AREA)[0] * stretch
-    force, kept = friction_force(law, spring, -spring - damping(law, AREA)[0] * velocity, np.array([bound]))
+    spring = point_stiffness(law, AREA)[0] * stretch
+    force, kept = friction_force(law, spring, -spring - point_damping(law, AREA)[0] * velocity, np.array([bound]))
     return complex(force[0]), complex((kept * stretch)[0])
 
 
@@ -113,7 +113,7 @@ def test_the_velocity_law_has_two_segments():
     area, bound = np.array([0.0456]), np.array([0.7 * 70.0 * 9.81])
     speeds = np.array([1e-3, 5e-3, 10.5e-3, 50e-3])
     forces = [
-        abs(friction_force(LAW, np.zeros(1, complex), -damping(LAW, area)[0] * np.array([v + 0j]), bound)[0][0])
+        abs(friction_force(LAW, np.zeros(1, complex), -point_damping(LAW, area)[0] * np.array([v + 0j]), bound)[0][0])
         for v in speeds
     ]
     np.testing.assert_allclose(forces[:2], 1e6 * 0.0456 * speeds[:2])

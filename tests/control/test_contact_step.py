@@ -55,8 +55,8 @@ def test_the_factor_of_a_mobility_has_a_column_for_each_way_in_which_the_bodies_
 
 @given(depth=st.floats(-1e-3, 1e-3), spin=st.floats(-2.0, 2.0), speed=st.floats(-1.0, 1.0), sink=st.floats(-0.5, 1.0))
 def test_a_height_function_that_is_level_acts_as_the_plane(depth, spin, speed, sink):
-    V, mobility = [0.1, -spin, spin, speed, 0.2, -sink], np.linalg.inv(MASS)
-    plane, function = (step(depth, V, mobility, ground=ground) for ground in (LEVEL, HeightGround(lambda x, y: 0.0 * x)))
+    V, mobility, level = [0.1, -spin, spin, speed, 0.2, -sink], np.linalg.inv(MASS), HeightGround(lambda x, y: 0.0 * x)
+    plane, function = (step(depth, V, mobility, ground=ground) for ground in (LEVEL, level))
     np.testing.assert_allclose(function.force, plane.force, rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(function.memory.anchor, plane.memory.anchor, atol=1e-12)
 
