@@ -311,7 +311,8 @@ def body_mobility(M: Array, J: Array, added: Array) -> Array:
         J: stacked Jacobians of the bodies' velocities, shape (m, nv).
         added: D, what a step of the joints' law adds to the diagonal, shape (nv,).
     """
-    G: Array = MOBILITY_MARGIN * J @ np.linalg.solve(M + np.diag(added), J.T)
+    _, accelerations, _ = dposv(M + np.diag(added), MOBILITY_MARGIN * J.T)
+    G: Array = J @ accelerations
     return G
 
 
@@ -328,7 +329,7 @@ def mobility_factor(G: Array, rank: int) -> Array:
     Z, pivots, found, _ = dpstrf(G, tol=RANK_TOLERANCE * G.max(), lower=1)
     found = min(found, rank)
     factor = np.zeros((len(G), rank))
-    factor[pivots - 1, :found] = np.tril(Z)[:, :found]
+    factor[pivots - 1, :found] = np.tril(Z[:, :found])
     return factor
 
 
