@@ -178,14 +178,14 @@ class ContactStep:
         self._step, self._averaging = np.array(step), np.array(parameters.averaging)
         self._newest, self._eye = np.array(1.0 - parameters.averaging), np.eye(rank) / step
 
-        # Where the Jacobians of the points are not 0, as of the body that each is on; and what turns with it.
-        places = np.arange(18 * n * b).reshape(3 * n, b, 6)
-        along, normal = places[: 2 * n].reshape(b, k, 2, b, 6), places[2 * n :].reshape(b, k, 1, b, 6)
-        own = np.einsum("ijaib->ijab", np.concatenate((along, normal), axis=2)).reshape(n, 3, 6)
+        # Where the Jacobians of the points are not 0: x, y and normal of each point, by the velocity of its own body.
+        point = np.arange(n)
+        rows = np.stack((2 * point, 2 * point + 1, 2 * n + point), axis=1)
+        own = 6 * b * rows[..., None] + 6 * (point // k)[:, None, None] + np.arange(6)
         self._places, self._turning_places = own.ravel(), own[..., :3].ravel()
         _, R_SW = ground(np.zeros(3))
-        self._X, self._k = np.zeros(places.size), k
-        self._X[self._places] = point_jacobians(np.zeros((n, 3)), R_SW).ravel()
+        self._X, self._k = np.zeros((3 * n, 6 * b)), k
+        self._X.ravel()[self._places] = point_jacobians(np.zeros((n, 3)), R_SW).ravel()
         self._turning = point_jacobians(np.eye(3), R_SW)[..., :3].reshape(3, 9)
 
     def __call__(
@@ -269,10 +269,10 @@ class ContactStep:
         """From the bodies' velocities to those of the points along the surface's axes, shape (3 n, 6 b)."""
         r = p_WQ - p_WB.repeat(self._k, 0)
         if R_SW.ndim == 2:  # A plane's: only r changes.
-            self._X[self._turning_places] = r.dot(self._turning).ravel()
+            self._X.ravel()[self._turning_places] = r.dot(self._turning).ravel()
         else:
-            self._X[self._places] = point_jacobians(r, R_SW).ravel()
-        return self._X.reshape(3 * len(r), -1)
+            self._X.ravel()[self._places] = point_jacobians(r, R_SW).ravel()
+        return self._X
 
 
 def point_jacobians(r: Array, R_SW: Array) -> Array:
