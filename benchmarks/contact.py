@@ -42,6 +42,8 @@ WALKS = ("thesis", "walk")
 COLORS = dict(zip(MODELS, ("#4477aa", "#228833", "#cc3311"), strict=True))
 LAST = 1.3
 """Stretch that is plotted [s]."""
+SWING = 0.2
+"""A foot that was longer off the ground has swung [s]: toes may touch as they leave, the heel twice as it lands."""
 LONGEST_EVALUATION = 1500
 """Steps of the walk whose states are evaluated."""
 REPEATS = 30
@@ -201,12 +203,21 @@ def compare(fresh: bool) -> dict[str, Any]:
     return results
 
 
+def plotted_from(walk: str, signals: Any, end: float) -> float:
+    """The thesis' feet go by the clock; the balanced walker's strides differ, so they are shown from a landing on."""
+    if walk == "thesis":
+        return end - LAST
+    down = signals[TIME].to_numpy()[foot_contact(signals, "Right")]
+    landings = down[1:][np.diff(down) > SWING]
+    return float(landings[landings <= end - LAST][-1])
+
+
 def draw(walk: str, shown: dict[str, Any], end: float) -> None:
     forces = new_figure(f"{walk}: force of the ground on the right foot", height=5.2, rows=3, sharex=True)
     soles = new_figure(f"{walk}: the right foot on the ground", height=5.2, rows=3, sharex=True)
     for name, (_, signals, motion) in shown.items():
-        time_s = signals[TIME].to_numpy()
-        rows = (time_s >= end - LAST) & (time_s <= end)
+        time_s = signals[TIME].to_numpy() - plotted_from(walk, signals, end)
+        rows = (time_s >= 0.0) & (time_s <= LAST)
         force = {axis: signals[f"right_foot.force_{axis}_N"].to_numpy()[rows] for axis in "xz"}
         on = force["z"] >= CONTACT_ON_N
         ahead = signals["right_foot.cop_x_m"].to_numpy()[rows] - signals["right_sole.x_m"].to_numpy()[rows]
@@ -223,6 +234,7 @@ def draw(walk: str, shown: dict[str, Any], end: float) -> None:
         curve(soles.axes[0], time_s[rows], np.where(on, 100 * ahead, np.nan), **style)
         curve(soles.axes[1], time_s[rows], np.where(on, 1e3 * speed, np.nan), **style)
         curve(soles.axes[2], time_s[rows], np.where(on, 1e3 * deepest, np.nan), **style)
+    since = f"{end - LAST:g} s" if walk == "thesis" else "a landing of the foot"
     level(forces.axes[0], shown[MODELS[0]][0].subject.mass * GRAVITY, "body weight")
     soles.axes[1].set_yscale("symlog", linthresh=1.0)
     forces.axes[2].set_ylim(0.0, 1.1)
@@ -232,7 +244,7 @@ def draw(walk: str, shown: dict[str, Any], end: float) -> None:
     ):
         for axes, text in zip(figure.axes, names, strict=True):
             label(axes, "", text)
-        label(figure.axes[-1], "time [s]", names[-1])
+        label(figure.axes[-1], f"time from {since} on [s]", names[-1])
         legend(figure.axes[0])
         figure.align_ylabels()
     IMAGES.mkdir(parents=True, exist_ok=True)
