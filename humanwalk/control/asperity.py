@@ -1,10 +1,12 @@
 """The thesis' contact law (2.4, 2.5): a normal penalty per area, and friction of asperities.
 
 Friction is a spring to an anchor on the ground, which breaks away and is dragged along, in parallel with a Coulomb law
-of two segments over velocity. Every function acts on any number of contact points at once; a point is a piece of sole
-with an area.
+of two segments over velocity. Within its bounds the law is linear: along the surface's axes x and y and its normal, a
+point with the area A that is e = [stretch of its spring, height above the surface] away from rest is pushed by
 
-Lengths count positive into the ground: `depth` [m] and its rate [m/s]. A vector along the surface is a complex number.
+    f = A p n - K e - C e'     (Eq 2-32 with the distance that it lost, E8).
+
+Every function acts on any number of contact points at once. A vector along the surface is a complex number.
 """
 
 from __future__ import annotations
@@ -20,7 +22,9 @@ from humanwalk.quantity import ParameterError, quantity
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-TINY = 1e-300
+# Arrays: numpy takes them quicker than Python's numbers.
+ZERO, ONE = np.array(0.0), np.array(1.0)
+TINY = np.array(1e-300)
 """Makes 0 / 0 a 0."""
 
 
@@ -85,55 +89,62 @@ class AsperityParameters:
                     )
 
 
-def friction_coefficient(parameters: AsperityParameters, pressure: Array, time: float) -> Array | float:
-    """mu with its multipliers.
+def point_stiffness(parameters: AsperityParameters, area: Array) -> Array:
+    """K of n points with an area [m2] [N/m], shape (3 n,): x and y of each point first, then the normals."""
+    return _of_points(parameters.spring_stiffness * area, parameters.normal_stiffness * area)
+
+
+def point_damping(parameters: AsperityParameters, area: Array, rising: Array | bool = False) -> Array:
+    """C of points, likewise [N s/m]; along the normal it counts by its separation factor where they rise."""
+    factor = np.where(rising, parameters.separation_damping, 1.0)
+    return _of_points(parameters.velocity_stiffness * area, factor * parameters.normal_damping * area)
+
+
+def _of_points(along: Array, normal: Array) -> Array:
+    return np.concatenate((np.repeat(along, 2), normal))
+
+
+def friction_bound(parameters: AsperityParameters, normal: Array, load: Array, area: Array, time: float) -> Array:
+    """mu, with its multipliers, times the normal force: the most that friction may be [N].
 
     Args:
         parameters: of the law.
-        pressure: normal force per area [Pa], any shape; the result has it, too, or is one number.
+        normal: force of the points along the normal [N], any shape.
+        load: its running mean; one that falls faster must not leave more friction than mu times what is left of it.
+        area: of the points [m2].
         time: [s].
     """
-    mu: Array | float = parameters.friction
+    firm = np.minimum(load, normal)
+    if parameters.stiction:
+        firm = np.maximum(firm, ZERO)
+    mu = parameters.friction
     if parameters.time_multiplier:
         mu *= float(_multiplier(parameters.time_multiplier, np.asarray(time)))
+    bound: Array = mu * firm
     if parameters.pressure_multiplier:
-        mu = mu * _multiplier(parameters.pressure_multiplier, pressure)
-    return mu
+        bound *= _multiplier(parameters.pressure_multiplier, normal / area)
+    return bound
 
 
 def _multiplier(knots: tuple[Knot, ...], at: Array) -> Array:
     return np.interp(at, [knot.at for knot in knots], [knot.factor for knot in knots])
 
 
-def normal_force(parameters: AsperityParameters, area: Array, depth: Array, rate: Array) -> Array:
-    """F = A (p + kp d + cp d'), cp times the separation factor while d' < 0; never a pull beyond the stiction.
-
-    Eq 2-32 with the distance that it lost (E8); zero above the surface.
+def normal_force(parameters: AsperityParameters, linear: Array, height: Array) -> Array:
+    """The linear law's force where a point is below the surface, and never a pull beyond the stiction.
 
     Args:
         parameters: of the law.
-        area: of each point [m2].
-        depth, rate: how far below the surface it is [m], and how fast it goes deeper [m/s].
-
-    Returns:
-        Force along the surface's normal, away from the ground [N].
+        linear: A p - K h - C h' along the normal [N].
+        height: h of the points above the surface [m].
     """
-    pressure = parameters.normal_stiffness * depth + normal_damping(parameters, rate) * rate
-    pressure += parameters.normal_pressure
-    force: Array = np.maximum(area * pressure, -parameters.stiction) * (depth > 0.0)
+    force: Array = np.maximum(linear, -parameters.stiction) * (height < ZERO)
     return force
 
 
-def normal_damping(parameters: AsperityParameters, rate: Array) -> Array | float:
-    """Damping per area [N s/m3] at a rate of the depth [m/s]."""
-    if parameters.separation_damping == 1.0:
-        return parameters.normal_damping
-    return parameters.normal_damping * np.where(rate < 0.0, parameters.separation_damping, 1.0)
-
-
 def friction_force(
-    parameters: AsperityParameters, area: Array, stretch: Complex, velocity: Complex, bound: Array
-) -> tuple[Complex, Complex]:
+    parameters: AsperityParameters, spring: Complex, linear: Complex, bound: Array
+) -> tuple[Complex, Array]:
     """Asperity spring and velocity law, together never more than Coulomb's bound.
 
     The spring breaks away at its breaking factor times the bound: the anchor is then dragged behind the point, so that
@@ -141,21 +152,19 @@ def friction_force(
 
     Args:
         parameters: of the law.
-        area: of each point [m2].
-        stretch: from anchor to point [m].
-        velocity: of the point along the surface [m/s].
+        spring: K e of the points along the surface, from anchor to point [N].
+        linear: - K e - C e' along the surface [N].
         bound: mu f_n >= 0 [N].
 
     Returns:
-        Force on each point [N], and the stretch that its spring is left with [m].
+        Force on each point [N], and the share of its stretch that its spring is left with.
     """
-    spring = parameters.spring_stiffness * area
-    held = stretch * share(parameters.breaking_factor * bound, spring * np.abs(stretch))
-    force = -spring * held - (parameters.velocity_stiffness * area) * velocity
-    return force * share(bound, np.abs(force)), held
+    kept = share(parameters.breaking_factor * bound, np.abs(spring))
+    force = linear + (ONE - kept) * spring
+    return force * share(bound, np.abs(force)), kept
 
 
 def share(allowed: Array, wanted: Array) -> Array:
     """How much of what is wanted is allowed: 1 where all of it is."""
-    portion: Array = np.minimum(1.0, allowed / (wanted + TINY))
+    portion: Array = np.minimum(ONE, allowed / (wanted + TINY))
     return portion

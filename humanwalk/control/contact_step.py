@@ -8,13 +8,16 @@ bodies that touch (D: what the joints add implicitly), their velocities V, and t
 
 is one linear system for V(t + h); a is what everything but the contact did in the last step. The law with all its
 bounds is then evaluated at that velocity.
+
+Feet whose bodies are connected by joints move in fewer ways than 6 a body. So the unknown is not V(t + h) but
+z = h Z' (F(t - h) - F), with G = Z Z' and a column of Z for each way: 16 numbers for the six bodies of the feet, and a
+matrix 1 / h + Z' B Z that is symmetric and positive.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -22,13 +25,16 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 from pydrake.systems.framework import Context
 from scipy.linalg import block_diag
+from scipy.linalg.lapack import dposv, dpstrf
 
 from humanwalk.control.asperity import (
+    ZERO,
     AsperityParameters,
-    friction_coefficient,
+    friction_bound,
     friction_force,
-    normal_damping,
     normal_force,
+    point_damping,
+    point_stiffness,
     share,
 )
 from humanwalk.control.ground import Ground
@@ -44,7 +50,7 @@ MOST_PASSES = 10
 WHOLE_PASSES = 3
 """Passes after which one goes only half the way: points that press in one pass and not in the next would alternate."""
 
-GRIP_TOLERANCE = 0.25
+GRIP_TOLERANCE = np.array(0.25)
 """Relative change of a grip that is worth another pass."""
 
 LONGEST_STEP = 0.002
@@ -55,20 +61,23 @@ MOBILITY_MARGIN = 1.5
 """Factor on the mobility: one that is a tenth too small would make a step of 1 ms unstable, one that is twice too great
 only lets the forces lag a little."""
 
-CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(1, 2, 0).reshape(3, 9)
-"""a CROSS, as a matrix (3, 3) times r, is r x a."""
+RANK_TOLERANCE = 1e-12
+"""What is left of a mobility, relative to its greatest element, that counts as nothing."""
+
+ALONG = np.array(1.0 + 1.0j)
+"""Makes a number a vector along the surface that has it as x and as y."""
 
 
-@dataclass(frozen=True)
-class ContactMemory:
-    """What one step leaves to the next, of b bodies with k points each.
+class ContactMemory(NamedTuple):
+    """What one step leaves to the next, of b bodies with k points each, n = b k together.
 
     Attributes:
-        anchor: where each point's spring is fastened, p_WA [m], shape (b, k, 3).
-        load: running mean of the normal force [N], shape (b, k).
-        grip: share of the linear friction that Coulomb's bound left, 1 while it sticks; shape (b, k).
-        V: velocities of the bodies [rad/s, m/s], shape (b, 6).
-        F: spatial forces of the contact on the bodies at their origins [N m, N], shape (b, 6).
+        anchor: where each point's spring is fastened, p_WA [m], shape (n, 3).
+        load: running mean of the normal force [N], 0 in the air; shape (n,).
+        grip: share of its linear force that the bounds left to each point, 1 while it presses and sticks, 0 in the air;
+            x and y of each point first, then the normals, shape (3 n,).
+        V: velocities of the bodies [rad/s, m/s], shape (6 b,).
+        F: spatial forces of the contact on the bodies at their origins [N m, N], shape (6 b,).
     """
 
     anchor: Array
@@ -79,72 +88,65 @@ class ContactMemory:
 
     @staticmethod
     def fresh(p_WQ: Array, V: Array) -> ContactMemory:
-        """Of points, shape (b, k, 3), that have touched nothing yet, on bodies with velocities V, shape (b, 6)."""
-        return ContactMemory(p_WQ, np.zeros(p_WQ.shape[:2]), np.ones(p_WQ.shape[:2]), V, np.zeros_like(V))
+        """Of points, shape (n, 3), that have touched nothing yet, on bodies with velocities V, shape (6 b,)."""
+        return ContactMemory(p_WQ, np.zeros(len(p_WQ)), np.zeros(p_WQ.size), V, np.zeros_like(V))
 
 
-@dataclass(frozen=True)
-class Contacts:
-    """All contacts at one time; of b bodies with k points each.
+class Contacts(NamedTuple):
+    """All contacts at one time; of b bodies with k points each, n = b k together.
 
     Attributes:
-        force_S: force on each point along the axes of the surface [N], shape (b, k, 3).
-        bound: mu f_n, what friction may reach [N], shape (b, k).
-        depth: below the surface [m], negative above it; shape (b, k).
-        X: Jacobians of the points, see `point_jacobians`.
-        held: stretch of the asperity springs [m], complex, shape (b, k).
+        friction: force on each point along the surface [N], complex, shape (n,).
+        normal: force on each point along the surface's normal [N], shape (n,).
+        bound: mu f_n, what friction may reach [N], shape (n,).
+        height: above the surface [m], negative below it; shape (n,).
+        held: stretch of the asperity springs [m], complex, shape (n,).
         p_WB: origins of the bodies [m], shape (b, 3).
+        p_WQ: points [m], shape (n, 3).
         R_SW: axes of the surface, see `Ground`.
         memory: for the next step.
     """
 
-    force_S: Array
+    friction: Complex
+    normal: Array
     bound: Array
-    depth: Array
-    X: Array
+    height: Array
     held: Complex
     p_WB: Array
+    p_WQ: Array
     R_SW: Array
     memory: ContactMemory
 
     @property
     def force(self) -> Array:
-        """On each point, in W [N], shape (b, k, 3)."""
-        force: Array = np.vecmat(self.force_S, self.R_SW)
-        return force
-
-    @property
-    def normal(self) -> Array:
-        """Force on each point along the surface's normal [N], shape (b, k)."""
-        return self.force_S[..., 2]
-
-    @property
-    def friction(self) -> Complex:
-        """Force on each point along the surface [N], shape (b, k)."""
-        return _along(self.force_S)
+        """On each point, in W [N], shape (n, 3)."""
+        return _in_world(self.R_SW, self.friction) + self.normal[:, None] * self.R_SW[..., 2, :]
 
     def total(self, bodies: slice) -> tuple[Array, Array]:
         """Force on some of the bodies [N] and its moment about the world's origin [N m], in W, shape (3,) each."""
-        F = self.memory.F[bodies]
+        F = self.memory.F.reshape(-1, 6)[bodies]
         f = F[:, 3:]
         return f.sum(axis=0), F[:, :3].sum(axis=0) + moments(self.p_WB[bodies], f)
 
     def friction_use(self, bodies: slice) -> float:
         """Friction on some of the bodies as a share of the most that the ground could give; 0 without contact."""
-        along = self.force_S * (1.0, 1.0, 0.0)
-        friction = np.vecmat(along, self.R_SW)[bodies].sum(axis=(0, 1))
-        return friction_use(friction, float(self.bound[bodies].sum()))
+        b = len(self.p_WB)
+        friction, bound = _in_world(self.R_SW, self.friction).reshape(b, -1, 3), self.bound.reshape(b, -1)
+        return friction_use(friction[bodies].sum(axis=(0, 1)), float(bound[bodies].sum()))
 
     @property
     def stretch(self) -> Array:
-        """Of the asperity springs [m], shape (b, k)."""
+        """Of the asperity springs [m], shape (n,)."""
         return np.abs(self.held)
 
     @property
     def slip(self) -> Array:
-        """Speed along the surface of the points that press on it [m/s], 0 for the others; shape (b, k)."""
-        velocity = (self.X @ self.memory.V[..., None]).reshape(self.force_S.shape)
-        return np.abs(_along(velocity)) * (self.normal > 0.0)
+        """Speed along the surface of the points that press on it [m/s], 0 for the others; shape (n,)."""
+        b, V = len(self.p_WB), self.memory.V.reshape(-1, 1, 6)
+        velocity = V[..., 3:] + np.cross(V[..., :3], self.p_WQ.reshape(b, -1, 3) - self.p_WB[:, None])
+        along = np.matvec(self.R_SW, velocity.reshape(-1, 3))[:, :2]
+        slip: Array = np.hypot(*along.T) * (self.normal > 0.0)
+        return slip
 
     def __deepcopy__(self, memo: object) -> Self:
         """Itself: Drake copies abstract values often, and nothing in here ever changes."""
@@ -152,26 +154,39 @@ class Contacts:
 
 
 class ContactStep:
-    """The contacts of b bodies with k points each over a step.
+    """The contacts of b bodies with k points each over a step, n = b k together.
+
+    What is written anew in every step is allocated once, and all vectors of the points are in one piece, x and y of
+    each point first, then the normals: with so few points it is the calls of numpy that cost, and so they cost least.
 
     Args:
         parameters: of the law.
         ground: the surface.
         area: of the points [m2], shape (b, k).
         step: h [s].
+        rank: of the mobility, see `mobility_factor`.
     """
 
-    def __init__(self, parameters: AsperityParameters, ground: Ground, area: Array, step: float) -> None:
-        self._parameters, self._ground, self._area, self._step = parameters, ground, area, step
-        p = parameters
-        # Of the law that sticks and presses, along the surface's axes: force at rest, and what a velocity adds.
-        self._stiffness = area[..., None] * (p.spring_stiffness, p.spring_stiffness, p.normal_stiffness)
-        damping = area[..., None] * (p.velocity_stiffness, p.velocity_stiffness, p.normal_damping)
-        self._impedance = damping + step * self._stiffness
-        # Written anew in every pass: allocating takes as long as adding.
-        b, k = area.shape
-        self._left, self._system = np.empty((b, k, 3)), np.zeros((b, 6, b, 6))
-        self._blocks = np.einsum("iaib->iab", self._system)
+    def __init__(self, parameters: AsperityParameters, ground: Ground, area: Array, step: float, rank: int) -> None:
+        self._parameters, self._ground, self._area = parameters, ground, area.ravel()
+        K, C = point_stiffness(parameters, self._area), point_damping(parameters, self._area)
+        (b, k), n = area.shape, area.size
+        self._stiffness, self._at_rest, self._impedance = K, step * K, C + step * K
+        self._spring = parameters.spring_stiffness * self._area
+        self._pressure = np.concatenate((np.zeros(2 * n), parameters.normal_pressure * self._area))
+        # numpy takes arrays quicker than Python's numbers.
+        self._step, self._averaging = np.array(step), np.array(parameters.averaging)
+        self._newest, self._eye = np.array(1.0 - parameters.averaging), np.eye(rank) / step
+
+        # Where the Jacobians of the points are not 0: x, y and normal of each point, by the velocity of its own body.
+        point = np.arange(n)
+        rows = np.stack((2 * point, 2 * point + 1, 2 * n + point), axis=1)
+        own = 6 * b * rows[..., None] + 6 * (point // k)[:, None, None] + np.arange(6)
+        self._places, self._turning_places = own.ravel(), own[..., :3].ravel()
+        _, R_SW = ground(np.zeros(3))
+        self._X, self._k = np.zeros((3 * n, 6 * b)), k
+        self._X.ravel()[self._places] = point_jacobians(np.zeros((n, 3)), R_SW).ravel()
+        self._turning = point_jacobians(np.eye(3), R_SW)[..., :3].reshape(3, 9)
 
     def __call__(
         self, p_WB: Array, p_WQ: Array, V: Array, memory: ContactMemory, mobility: Array, time: float
@@ -180,89 +195,99 @@ class ContactStep:
 
         Args:
             p_WB: origins of the bodies [m], shape (b, 3).
-            p_WQ: points [m], shape (b, k, 3).
-            V: velocities of the bodies at their origins, in W [rad/s, m/s], shape (b, 6).
+            p_WQ: points of one body after the other [m], shape (n, 3).
+            V: velocities of the bodies at their origins, in W [rad/s, m/s], shape (6 b,).
             memory: what the last step left.
-            mobility: G, in W at the origins, shape (6 b, 6 b); of zeros, the law is explicit.
+            mobility: Z, in W at the origins, see `mobility_factor`, shape (6 b, rank); of zeros, the law is explicit.
             time: [s].
         """
-        parameters, area, step = self._parameters, self._area, self._step
-        b, k = area.shape
+        parameters, n = self._parameters, len(p_WQ)
         height, R_SW = self._ground(p_WQ)
-        depth = -height
-        X = point_jacobians(p_WQ - p_WB[:, None], R_SW)
-        e = np.matvec(R_SW, p_WQ - memory.anchor)
-        stretch = _along(e).copy()
-        e[..., 2] = height - parameters.normal_pressure / parameters.normal_stiffness
-        pull = -self._stiffness * e
+        X = self._jacobians(p_WB, p_WQ, R_SW)
+        e = np.concatenate((_along(R_SW, p_WQ - memory.anchor), height))
+        impedance = self._impedance
+        v0, e0 = self._unloaded(e, impedance)
 
-        # Where everything would go without this step's contact.
-        hG = step * mobility
-        end = free = (2.0 * V - memory.V).ravel() - hG @ memory.F.ravel()
-        presses, grip, impedance = memory.load > 0.0, memory.grip, self._impedance
-        left = self._left
+        # How much faster than v0 the points would get with the last step's forces, and how much each of z slows them.
+        faster = X.dot(V + V - memory.V) - v0
+        Y = X.dot(mobility)
+        z = last = memory.F.dot(mobility)
+        running, grip = self._averaging * memory.load, memory.grip
         for place in range(MOST_PASSES):
-            # The law's linearisation F0 - S v, for the points that are thought to press, with the grip that they had.
-            left[..., 2] = presses
-            left[..., :2] = (presses * grip)[..., None]
-            np.matmul(X.mT, (left * impedance).reshape(b, 3 * k, 1) * X, out=self._blocks)
-            system = hG @ self._system.reshape(6 * b, 6 * b)
-            system.flat[:: 6 * b + 1] += 1.0
-            solved = np.linalg.solve(system, free + hG @ _wrenches(X, left * pull).ravel())
-            end = solved if place < WHOLE_PASSES else 0.5 * (end + solved)
-
-            # The law itself, there; once more if it finds other points pressing or sliding than was thought.
-            v = (X @ end.reshape(b, 6, 1)).reshape(b, k, 3)
-            velocity, rate = _along(v), -v[..., 2]
-            f_n = normal_force(parameters, area, depth + step * rate, rate)
-            load = parameters.averaging * memory.load + (1.0 - parameters.averaging) * f_n
-            # A load that falls faster than its mean must not leave more friction than mu times what is left of it.
-            bound = friction_coefficient(parameters, f_n / area, time) * np.maximum(0.0, np.minimum(load, f_n))
-            f_t, held = friction_force(parameters, area, stretch + step * velocity, velocity, bound)
-            assumed, grip = grip, share(np.abs(f_t), np.abs(_along(pull - impedance * v)))
-            thought, presses = presses, f_n != 0.0
-            grip[~presses] = 1.0
-            if (thought == presses).all() and (np.abs(grip - assumed) <= GRIP_TOLERANCE * assumed).all():
-                break
+            # The linear law, for the points that are thought to press, with the grip that they had.
+            weight = grip * impedance
+            system = Y.T.dot(weight[:, None] * Y) + self._eye
+            # Symmetric, so its transpose has the order that LAPACK may write into.
+            _, solved, _ = dposv(system.T, (weight * faster).dot(Y) + last, overwrite_a=True, overwrite_b=True)
+            z = solved if place < WHOLE_PASSES else 0.5 * (z + solved)
+            short = Y.dot(z) - faster
             if parameters.separation_damping != 1.0:
-                impedance = self._impedance.copy()
-                impedance[..., 2] = area * (normal_damping(parameters, rate) + step * parameters.normal_stiffness)
-        f = np.empty((b, k, 3))
-        _along(f)[...] = f_t
-        f[..., 2] = f_n
+                v = v0 - short
+                impedance = self._at_rest + point_damping(parameters, self._area, v[2 * n :] > 0.0)
+                v0, e0 = self._unloaded(e, impedance)
+                short, faster = v0 - v, faster + (v - v0) + short
+
+            # The law with its bounds; once more if it finds other points pressing or sliding than was thought.
+            f, end = impedance * short, e0 - self._step * short
+            linear, stretch = f[: 2 * n].view(complex), end[: 2 * n].view(complex)
+            f_n = normal_force(parameters, f[2 * n :], end[2 * n :])
+            load = running + self._newest * f_n
+            bound = friction_bound(parameters, f_n, load, self._area, time)
+            f_t, kept = friction_force(parameters, self._spring * stretch, linear, bound)
+            assumed, grip = grip, np.empty_like(f)
+            np.multiply(share(np.abs(f_t), np.abs(linear)), ALONG, out=grip[: 2 * n].view(complex))
+            grip[2 * n :] = f_n != ZERO
+            if not np.count_nonzero(np.abs(grip - assumed) > GRIP_TOLERANCE * assumed):
+                break
+        f[: 2 * n], f[2 * n :] = f_t.view(float), f_n
+        held = kept * stretch
         return Contacts(
-            force_S=f,
+            friction=f_t,
+            normal=f_n,
             bound=bound,
-            depth=depth,
-            X=X,
+            height=height,
             held=held,
             p_WB=p_WB,
+            p_WQ=p_WQ,
             R_SW=R_SW,
             memory=ContactMemory(
-                anchor=p_WQ + np.vecmat(_components(step * velocity - held), R_SW[..., :2, :]),
-                load=load * presses,
+                # The anchors stay behind the points by what the springs hold.
+                anchor=p_WQ + _in_world(R_SW, stretch - e[: 2 * n].view(complex) - held),
+                load=load * grip[2 * n :],
                 grip=grip,
                 V=V,
-                F=_wrenches(X, f),
+                F=f.dot(X),
             ),
         )
+
+    def _unloaded(self, e: Array, impedance: Array) -> tuple[Array, Array]:
+        """Velocity over the step with which points at e end without a force of the linear law, and where they end."""
+        v0 = (self._pressure - self._stiffness * e) / impedance
+        return v0, e + self._step * v0
+
+    def _jacobians(self, p_WB: Array, p_WQ: Array, R_SW: Array) -> Array:
+        """From the bodies' velocities to those of the points along the surface's axes, shape (3 n, 6 b)."""
+        r = p_WQ - p_WB.repeat(self._k, 0)
+        if R_SW.ndim == 2:  # A plane's: only r changes.
+            self._X.ravel()[self._turning_places] = r.dot(self._turning).ravel()
+        else:
+            self._X.ravel()[self._places] = point_jacobians(r, R_SW).ravel()
+        return self._X
 
 
 def point_jacobians(r: Array, R_SW: Array) -> Array:
     """From [angular; translational] velocities of bodies in W to those of points at r from their origins, in S.
 
     Args:
-        r: in W [m], shape (b, k, 3).
-        R_SW: axes of the surface, shape (3, 3) or (b, k, 3, 3).
+        r: in W [m], shape (..., 3).
+        R_SW: axes of the surface, shape (3, 3) or (..., 3, 3).
 
     Returns:
-        Rows [r x axis, axis] for the three axes of each point, shape (b, 3 k, 6).
+        Rows [r x axis, axis] for the three axes of each point, shape (..., 3, 6).
     """
-    b, k = r.shape[:2]
-    X = np.empty((b, k, 3, 6))
-    X[..., :3] = ((R_SW @ CROSS).reshape(*R_SW.shape[:-2], 9, 3) @ r[..., None]).reshape(b, k, 3, 3)
-    X[..., 3:] = R_SW
-    return X.reshape(b, 3 * k, 6)
+    X = np.empty((*r.shape, 6))
+    X[..., :3], X[..., 3:] = np.cross(r[..., None, :], R_SW), R_SW
+    return X
 
 
 def body_jacobians(plant: MultibodyPlant, context: Context, bodies: Sequence[RigidBody]) -> Array:
@@ -286,8 +311,26 @@ def body_mobility(M: Array, J: Array, added: Array) -> Array:
         J: stacked Jacobians of the bodies' velocities, shape (m, nv).
         added: D, what a step of the joints' law adds to the diagonal, shape (nv,).
     """
-    G: Array = MOBILITY_MARGIN * J @ np.linalg.solve(M + np.diag(added), J.T)
+    _, accelerations, _ = dposv(M + np.diag(added), MOBILITY_MARGIN * J.T)
+    G: Array = J @ accelerations
     return G
+
+
+def mobility_factor(G: Array, rank: int) -> Array:
+    """Z with Z Z' = G, of as many columns as G has a rank: bodies that joints connect move each other in fewer ways.
+
+    Args:
+        G: mobility of b bodies, shape (6 b, 6 b).
+        rank: number of columns; if it is less than the rank of G, the least mobile ways are left out.
+
+    Returns:
+        Shape (6 b, rank).
+    """
+    Z, pivots, found, _ = dpstrf(G, tol=RANK_TOLERANCE * G.max(), lower=1)
+    found = min(found, rank)
+    factor = np.zeros((len(G), rank))
+    factor[pivots - 1, :found] = np.tril(Z[:, :found])
+    return factor
 
 
 def patch_impedance(r: Array, area: Array, R_SW: Array, along: float, across: float) -> Array:
@@ -303,8 +346,8 @@ def patch_impedance(r: Array, area: Array, R_SW: Array, along: float, across: fl
         [angular; translational] at the origins in W, block diagonal, shape (6 b, 6 b).
     """
     X = point_jacobians(r, R_SW)
-    weights = (area[..., None] * np.array([across, across, along])).reshape(len(r), -1, 1)
-    matrix: Array = block_diag(*(X.mT @ (weights * X)))
+    weights = area[..., None] * (across, across, along)
+    matrix: Array = block_diag(*np.einsum("bkia,bki,bkic->bac", X, weights, X))
     return matrix
 
 
@@ -346,19 +389,15 @@ def largest_contact_step(
     return largest_stable_step(update, upper)
 
 
-def _along(vectors: Array) -> Complex:
-    """What of vectors in S, shape (b, k, 3), is along the surface; a view, shape (b, k)."""
-    along: Complex = vectors[..., :2].view(np.complex128)[..., 0]
-    return along
+def _along(R_SW: Array, vectors: Array) -> Array:
+    """x and y in S of each of n vectors in W, shape (2 n,)."""
+    R = R_SW[..., :2, :]
+    along: Array = vectors.dot(R.T) if R.ndim == 2 else np.matvec(R, vectors)
+    return along.ravel()
 
 
-def _components(along: Complex) -> Array:
-    """x and y in S, shape (b, k, 2)."""
-    return np.ascontiguousarray(along)[..., None].view(np.float64)
-
-
-def _wrenches(X: Array, f_S: Array) -> Array:
-    """Spatial forces at the bodies' origins in W, shape (b, 6), of forces on the points in S, shape (b, k, 3)."""
-    b, rows = X.shape[:2]
-    wrenches: Array = (f_S.reshape(b, 1, rows) @ X)[:, 0]
-    return wrenches
+def _in_world(R_SW: Array, along: Complex) -> Array:
+    """Of vectors along the surface, shape (n,), in W, shape (n, 3)."""
+    R, vectors = R_SW[..., :2, :], along.view(float).reshape(-1, 2)
+    world: Array = vectors.dot(R) if R.ndim == 2 else np.vecmat(vectors, R)
+    return world

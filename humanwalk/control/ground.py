@@ -41,10 +41,10 @@ class PlaneGround:
             distance: of the plane from Wo along the normal [m].
         """
         self._R_SW = surface_axes(np.asarray(normal, dtype=float))
-        self._distance = distance
+        self._normal, self._distance = self._R_SW[2], np.array(distance)
 
     def __call__(self, p_WQ: Array) -> tuple[Array, Array]:
-        return p_WQ @ self._R_SW[2] - self._distance, self._R_SW
+        return p_WQ.dot(self._normal) - self._distance, self._R_SW
 
 
 @dataclass(frozen=True)

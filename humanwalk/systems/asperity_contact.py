@@ -26,6 +26,7 @@ from humanwalk.control.contact_step import (
     ContactStep,
     body_jacobians,
     body_mobility,
+    mobility_factor,
 )
 from humanwalk.control.ground import Ground
 from humanwalk.control.ground_force import foot_force
@@ -82,15 +83,18 @@ class AsperityContact(LeafSystem):
         # The origin comes first, so that one call gives it and all points.
         self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
         area = np.array([patch.area for patch in patches])
-        self._contact_step = ContactStep(parameters, ground, area, plant.time_step())
+        b, k = area.shape
+        rank = int(np.linalg.matrix_rank(body_jacobians(plant, self._plant_context, self._bodies)))
+        self._contact_step = ContactStep(parameters, ground, area, plant.time_step(), rank)
         ends = np.cumsum([len(foot) for foot in feet])
         self._feet = [slice(end - len(foot), end) for foot, end in zip(feet, ends, strict=True)]
-        b, k = area.shape
+        self._forces = [ExternallyAppliedSpatialForce() for _ in self._bodies]
+        for force, body in zip(self._forces, self._bodies, strict=True):
+            force.body_index = body.index()
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        self._shapes = ((b, k, 3), (b, k), (b, k), (b, 6), (b, 6))
-        self._memory = [self.DeclareDiscreteState(int(np.prod(shape))) for shape in self._shapes]
-        self._mobility = self.DeclareDiscreteState((6 * b) ** 2)
+        self._memory = [self.DeclareDiscreteState(size) for size in (3 * b * k, b * k, 3 * b * k, 6 * b, 6 * b)]
+        self._mobility = self.DeclareDiscreteState(6 * b * rank)
         # Unrestricted, as the plant's step is: a simulator runs these before discrete updates, which would see a plant
         # that has already moved.
         self.DeclareInitializationUnrestrictedUpdateEvent(self._forget)
@@ -117,33 +121,26 @@ class AsperityContact(LeafSystem):
         self._foot_forces_output = declare("foot_forces", 8 * len(feet), self._foot_forces)
         self._friction_use_output = declare("friction_use", len(feet), self._friction_use)
         self._point_forces_output = declare("point_forces", 3 * b * k, lambda contacts: contacts.force)
-        self._depth_output = declare("depth", b * k, lambda contacts: contacts.depth)
+        self._depth_output = declare("depth", b * k, lambda contacts: -contacts.height)
         self._slip_output = declare("slip", b * k, lambda contacts: contacts.slip)
         self._stretch_output = declare("stretch", b * k, lambda contacts: contacts.stretch)
         self._anchors_output = self.DeclareStateOutputPort("anchors", self._memory[0])
 
     def _kinematics(self, context: Context) -> tuple[Array, Array, Array]:
-        """Origins of the bodies (b, 3), their points (b, k, 3) and their velocities (b, 6) in W."""
-        plant, inner = self._plant, self._plant_context
+        """Origins of the bodies (b, 3), their points (b k, 3) and their velocities (6 b) in W."""
+        plant, inner, world = self._plant, self._plant_context, self._world
         plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        p_W = np.array(
-            [
-                plant.CalcPointsPositions(inner, frame, points, self._world).T
-                for frame, points in zip(self._frames, self._points, strict=True)
-            ]
-        )
-        V = np.array([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
-        return p_W[:, 0], p_W[:, 1:], V
+        bodies = zip(self._frames, self._points, strict=True)
+        p_W = np.concatenate([plant.CalcPointsPositions(inner, frame, points, world).T for frame, points in bodies])
+        p_W = p_W.reshape(len(self._bodies), -1, 3)
+        V = np.concatenate([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
+        return p_W[:, 0], p_W[:, 1:].reshape(-1, 3), V
 
     def _calc_contacts(self, context: Context, output: Value) -> None:
         p_WB, p_WQ, V = self._kinematics(context)
-        memory = ContactMemory(
-            *(
-                context.get_discrete_state(index).value().reshape(shape)
-                for index, shape in zip(self._memory, self._shapes, strict=True)
-            )
-        )
-        mobility = context.get_discrete_state(self._mobility).value().reshape(V.size, V.size)
+        anchor, *others = (context.get_discrete_state(index).value() for index in self._memory)
+        mobility = context.get_discrete_state(self._mobility).value().reshape(V.size, -1)
+        memory = ContactMemory(anchor.reshape(-1, 3), *others)
         output.set_value(self._contact_step(p_WB, p_WQ, V, memory, mobility, context.get_time()))
 
     def _remember(self, context: Context, state: State) -> EventStatus:
@@ -156,9 +153,7 @@ class AsperityContact(LeafSystem):
         return self._renew_mobility(context, state)
 
     def _write(self, state: State, memory: ContactMemory) -> None:
-        for index, value in zip(
-            self._memory, (memory.anchor, memory.load, memory.grip, memory.V, memory.F), strict=True
-        ):
+        for index, value in zip(self._memory, memory, strict=True):
             state.get_mutable_discrete_state(index).set_value(value.ravel())
 
     def _renew_mobility(self, context: Context, state: State) -> EventStatus:
@@ -167,17 +162,15 @@ class AsperityContact(LeafSystem):
         G = body_mobility(
             plant.CalcMassMatrix(inner), body_jacobians(plant, inner, self._bodies), self._joint_impedance
         )
-        state.get_mutable_discrete_state(self._mobility).set_value(G.ravel())
+        factor = state.get_mutable_discrete_state(self._mobility)
+        factor.set_value(mobility_factor(G, factor.size() // len(G)).ravel())
         return EventStatus.Succeeded()
 
     def _calc_forces(self, context: Context, output: Value) -> None:
-        forces = []
-        for body, wrench in zip(self._bodies, self._contacts.Eval(context).memory.F, strict=True):
-            force = ExternallyAppliedSpatialForce()
-            force.body_index = body.index()
+        wrenches = self._contacts.Eval(context).memory.F.reshape(-1, 6)
+        for force, wrench in zip(self._forces, wrenches, strict=True):
             force.F_Bq_W = SpatialForce(wrench)
-            forces.append(force)
-        output.set_value(forces)
+        output.set_value(self._forces)
 
     def _foot_forces(self, contacts: Contacts) -> Array:
         return np.array([foot_force(*contacts.total(bodies)).vector for bodies in self._feet])

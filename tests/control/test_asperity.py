@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 from humanwalk.control.asperity import (
     AsperityParameters,
     Knot,
-    friction_coefficient,
+    friction_bound,
     friction_force,
     normal_force,
+    point_damping,
+    point_stiffness,
 )
 from humanwalk.quantity import ParameterError, check
 
@@ -25,12 +27,16 @@ PLANAR = st.complex_numbers(max_magnitude=1.0, allow_nan=False, allow_infinity=F
 
 
 def normal(law, depth, rate):
-    return float(normal_force(law, AREA, np.array([depth]), np.array([rate]))[0])
+    height, rising = np.array([-depth]), np.array([-rate])
+    linear = -point_stiffness(law, AREA)[2:] * height - point_damping(law, AREA, rising > 0.0)[2:] * rising
+    return float(normal_force(law, law.normal_pressure * AREA + linear, height)[0])
 
 
 def friction(law, stretch, velocity, bound):
-    force, held = friction_force(law, AREA, np.array([stretch]), np.array([velocity]), np.array([bound]))
-    return complex(force[0]), complex(held[0])
+    stretch, velocity = np.array([stretch]), np.array([velocity])
+    spring = point_stiffness(law, AREA)[0] * stretch
+    force, kept = friction_force(law, spring, -spring - point_damping(law, AREA)[0] * velocity, np.array([bound]))
+    return complex(force[0]), complex((kept * stretch)[0])
 
 
 def test_the_thesis_numbers_are_the_defaults():
@@ -106,10 +112,13 @@ def test_the_velocity_law_has_two_segments():
     """E8's check: 0.7 m g on both soles, 0.0456 m2, is reached at 10.5 mm/s of slip."""
     area, bound = np.array([0.0456]), np.array([0.7 * 70.0 * 9.81])
     speeds = np.array([1e-3, 5e-3, 10.5e-3, 50e-3])
-    forces = [abs(friction_force(LAW, area, np.zeros(1, complex), np.array([v + 0j]), bound)[0][0]) for v in speeds]
+    forces = [
+        abs(friction_force(LAW, np.zeros(1, complex), -point_damping(LAW, area)[0] * np.array([v + 0j]), bound)[0][0])
+        for v in speeds
+    ]
     np.testing.assert_allclose(forces[:2], 1e6 * 0.0456 * speeds[:2])
     assert forces[2] == pytest.approx(bound[0], rel=0.005)
-    assert forces[3] == bound[0]
+    assert forces[3] == pytest.approx(bound[0], rel=1e-12)
 
 
 def test_multipliers_change_the_coefficient_over_time_and_pressure():
@@ -117,11 +126,21 @@ def test_multipliers_change_the_coefficient_over_time_and_pressure():
         time_multiplier=(Knot(at=1.0, factor=1.0), Knot(at=2.0, factor=0.0)),
         pressure_multiplier=(Knot(at=0.0, factor=1.0), Knot(at=1e5, factor=0.5)),
     )
-    pressure = np.array([0.0, 5e4, 2e5])
-    np.testing.assert_allclose(friction_coefficient(law, pressure, 0.0), 0.7 * np.array([1.0, 0.75, 0.5]))
-    np.testing.assert_allclose(friction_coefficient(law, pressure, 1.5), 0.35 * np.array([1.0, 0.75, 0.5]))
-    np.testing.assert_array_equal(friction_coefficient(law, pressure, 3.0), 0.0)
-    assert friction_coefficient(LAW, pressure, 3.0) == 0.7
+    normal = AREA * np.array([0.0, 5e4, 2e5])
+
+    def bound(time, law=law):
+        return friction_bound(law, normal, normal, AREA, time)
+
+    np.testing.assert_allclose(bound(0.0), 0.7 * normal * [1.0, 0.75, 0.5])
+    np.testing.assert_allclose(bound(1.5), 0.35 * normal * [1.0, 0.75, 0.5])
+    np.testing.assert_array_equal(bound(3.0), 0.0)
+    np.testing.assert_array_equal(bound(3.0, LAW), 0.7 * normal)
+
+
+@given(normal=st.floats(-3.0, 100.0), load=st.floats(0.0, 100.0))
+def test_friction_is_bound_by_the_lesser_of_force_and_mean_and_never_by_a_pull(normal, load):
+    bound = friction_bound(dataclasses.replace(LAW, stiction=3.0), np.array([normal]), np.array([load]), AREA, 0.0)
+    assert bound[0] == pytest.approx(0.7 * max(0.0, min(normal, load)))
 
 
 def test_knots_out_of_order_are_refused():

@@ -80,7 +80,8 @@ def test_a_foot_that_stands_on_its_heel_points_is_not_tilted_off_the_others(skel
     x = patch.p_BoQ_B[:, 0] + skeleton.origins[bodies[0]][0]
 
     def forces(sunk, tilt):
-        return normal_force(law, patch.area, sunk - tilt * (x - heel), np.zeros_like(x))
+        height = tilt * (x - heel) - sunk
+        return normal_force(law, -law.normal_stiffness * patch.area * height, height)
 
     def ahead_of_heel(tilt):
         sunk = brentq(lambda depth: forces(depth, tilt).sum() - WEIGHT, -0.1, 0.1)
