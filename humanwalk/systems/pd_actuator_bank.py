@@ -146,29 +146,21 @@ class PdActuatorBank(LeafSystem):
         piece.set_value(_piece_of(*samples))
 
     def _calc_driving_piece(self, context: Context, piece: Value) -> None:
-        feedforward = self._fed_forward(context)
-        piece.set_value(self._piece.Eval(context).mapped(lambda rows: self._driving(rows, feedforward)))
+        piece.set_value(self._piece.Eval(context).mapped(self._driving, self._fed_forward(context)))
 
-    def _driving(self, desired: Array, feedforward: Array | None) -> Array:
-        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state.
-
-        Args:
-            desired: (k, 2n) the desired state, or its coefficients of powers of time, the constant ones first.
-            feedforward: (n) if any.
-        """
+    def _driving(self, desired: Array) -> Array:
+        """kp q_d + kd v_d of desired states (..., 2n), shape (..., n)."""
         n = self._kp.size
-        tau: Array = self._kp * desired[:, :n] + self._kd * desired[:, n:]
-        if feedforward is not None:
-            tau[0] += feedforward
+        tau: Array = self._kp * desired[..., :n] + self._kd * desired[..., n:]
         return tau
 
     def _driving_torque(self, context: Context) -> Array:
+        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state."""
         if self._sample_time.HasValue(context):
             piece: HermitePiece = self._driving_piece.Eval(context)
             return piece.at(context.get_time())
-        desired: Array = self._desired.Eval(context)
-        now: Array = self._driving(desired[None], self._fed_forward(context))[0]
-        return now
+        tau, feedforward = self._driving(self._desired.Eval(context)), self._fed_forward(context)
+        return tau if feedforward is None else tau + feedforward
 
     def _held(self, context: Context) -> Array:
         """Desired state of now."""
