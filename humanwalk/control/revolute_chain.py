@@ -87,7 +87,7 @@ class RevoluteChain:
             if not isinstance(joint, RevoluteJoint) or joint.get_angle(context) != 0.0:
                 raise ValueError(f"{name}: no hinge, or not at zero")
             X_PJ = joint.frame_on_parent().CalcPose(context, P)
-            turn = X_PJ.rotation() @ joint.revolute_axis()
+            turn = X_PJ.rotation().matrix() @ joint.revolute_axis()
             axis = int(np.argmax(np.abs(turn)))
             if not np.isclose(abs(turn[axis]), 1.0, rtol=0.0, atol=1e-12):
                 raise ValueError(f"{name}: turns about {turn}, not about x, y or z of {base_frame}")
