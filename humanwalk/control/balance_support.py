@@ -69,21 +69,38 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
         reference: both of the reference, [q; V], shape (13,).
         parameters: stiffness and damping.
     """
+    return wrench_of_error(error_of_reference(q_WP, V_WP, reference), parameters)
+
+
+def error_of_reference(q_WP: Array, V_WP: Array, reference: Array) -> Array:
+    """How far the pelvis is off its reference, arguments as of `support_wrench`.
+
+    Returns:
+        Quaternion wxyz in W that leads from the reference's orientation to the pelvis', not normalised, then
+        differences of position [m] and of spatial velocity [rad/s, m/s]; shape (13,).
+    """
+    w, x, y, z = q_WP[:4]
+    a, b, c, d = reference[:4]
+    # The product of the one with the conjugate of the other.
+    turn = (
+        w * a + x * b + y * c + z * d,
+        -w * b + x * a - y * d + z * c,
+        -w * c + x * d + y * a - z * b,
+        -w * d - x * c + y * b + z * a,
+    )
+    return np.array((*turn, *(q_WP[4:] - reference[4:7]), *(V_WP - reference[7:])))
+
+
+def wrench_of_error(error: Array, parameters: BalanceSupportParameters) -> Array:
+    """Spatial force of `support_wrench` for an error of `error_of_reference`, shape (6,)."""
     K, D = parameters.diagonals
-    error = np.array((*_rotation_vector(q_WP[:4], reference[:4]), *(q_WP[4:] - reference[4:7])))
-    wrench: Array = -K * error - D * (V_WP - reference[7:])
+    wrench: Array = -K * np.array((*_rotation_vector(error[:4]), *error[4:7])) - D * error[7:]
     return wrench
 
 
-def _rotation_vector(wxyz: Array, wxyz_reference: Array) -> tuple[float, float, float]:
-    """Rotation vector [rad] in W that leads from the reference's orientation to the other one, the shorter way."""
-    w, x, y, z = wxyz
-    a, b, c, d = wxyz_reference
-    # The product of the one with the conjugate of the other.
-    cosine = w * a + x * b + y * c + z * d
-    i = -w * b + x * a - y * d + z * c
-    j = -w * c + x * d + y * a - z * b
-    k = -w * d - x * c + y * b + z * a
+def _rotation_vector(wxyz: Array) -> tuple[float, float, float]:
+    """Rotation vector [rad] of a quaternion that need not be normalised, the shorter way."""
+    cosine, i, j, k = wxyz
     # Near no rotation at all angle / sine goes to 2 / cosine.
     sine = max_(sqrt(i * i + j * j + k * k), 1e-12)
     # A quaternion and its negative are one orientation: both are multiplied by the cosine, which makes it positive.

@@ -24,7 +24,7 @@ class FootForce:
         loaded: whether the vertical force exceeds UNLOADED_N.
     """
 
-    f_W: Sequence[float]
+    f_W: Sequence[float] | Array
     p_WCop: Sequence[float]
     free_moment: float
     loaded: bool
@@ -45,14 +45,14 @@ def foot_force(f_W: Sequence[float] | Array, tau_Wo: Sequence[float] | Array, gr
         tau_Wo: their moment about the world origin [N m], three numbers.
         ground_height: height of the level ground [m].
     """
-    f_x, f_y, f_z = force = tuple(map(float, f_W))
-    tau_x, tau_y, tau_z = map(float, tau_Wo)
+    f_x, f_y, f_z = f_W
+    tau_x, tau_y, tau_z = tau_Wo
     if f_z <= UNLOADED_N:
-        return FootForce(force, (0.0, 0.0, 0.0), 0.0, False)
+        return FootForce(f_W, (0.0, 0.0, 0.0), 0.0, False)
     # On the plane z = ground_height the moment about the CoP has no horizontal part (Winter 2009, section 5.2.9).
     x = (-tau_y + ground_height * f_x) / f_z
     y = (tau_x + ground_height * f_y) / f_z
-    return FootForce(force, (x, y, ground_height), tau_z - (x * f_y - y * f_x), True)
+    return FootForce(f_W, (x, y, ground_height), tau_z - (x * f_y - y * f_x), True)
 
 
 def friction_use(f_t: Sequence[float] | Array, bound: float) -> float:

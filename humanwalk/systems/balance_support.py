@@ -4,10 +4,11 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable
 from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
-from pydrake.systems.primitives import MatrixGain, Multiplexer, SymbolicVectorSystem
+from pydrake.systems.primitives import Multiplexer, SparseMatrixGain, SymbolicVectorSystem
 from scipy.linalg import block_diag
+from scipy.sparse import csc_matrix
 
-from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+from humanwalk.control.balance_support import BalanceSupportParameters, error_of_reference, wrench_of_error
 
 
 class BalanceSupport(Diagram):
@@ -36,16 +37,20 @@ class BalanceSupport(Diagram):
         of_velocities = np.eye(plant.num_velocities())[first_v : first_v + 6]
         of_state = block_diag(np.eye(plant.num_positions())[first_q : first_q + 7], of_velocities)
         builder = DiagramBuilder()
-        pelvis_motion = builder.AddSystem(MatrixGain(of_state))
+        pelvis_motion = builder.AddSystem(SparseMatrixGain(csc_matrix(of_state)))
         motions = builder.AddSystem(Multiplexer([13, 13]))
-        x = MakeVectorContinuousVariable(26, "x")
+        x, e = MakeVectorContinuousVariable(26, "x"), MakeVectorContinuousVariable(13, "e")
         # Drake's expressions raise the processor's flag for numbers that are none, which NumPy would report.
         with np.errstate(invalid="ignore"):
-            law = support_wrench(x[13:20], x[20:], x[:13], parameters)
-        wrench = builder.AddSystem(SymbolicVectorSystem(input=x, output=law))
-        force = builder.AddSystem(MatrixGain(of_velocities.T))
+            off = error_of_reference(x[13:20], x[20:], x[:13])
+            law = wrench_of_error(e, parameters)
+        # In one expression the rotation's quaternion would be worked out anew wherever it stands.
+        error = builder.AddSystem(SymbolicVectorSystem(input=x, output=off))
+        wrench = builder.AddSystem(SymbolicVectorSystem(input=e, output=law))
+        force = builder.AddSystem(SparseMatrixGain(csc_matrix(of_velocities.T)))
         builder.Connect(pelvis_motion.get_output_port(), motions.get_input_port(1))
-        builder.Connect(motions.get_output_port(), wrench.get_input_port())
+        builder.Connect(motions.get_output_port(), error.get_input_port())
+        builder.Connect(error.get_output_port(), wrench.get_input_port())
         builder.Connect(wrench.get_output_port(), force.get_input_port())
         builder.ExportInput(motions.get_input_port(0), "pelvis_reference")
         builder.ExportInput(pelvis_motion.get_input_port(), "state")

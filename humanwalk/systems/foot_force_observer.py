@@ -78,7 +78,8 @@ class FootForceObserver(LeafSystem):
                 foot, sign = found
                 force, moment = F_Ac_W.translational().tolist(), F_Ac_W.rotational().tolist()
                 _add(wrenches[foot], sign, surface.centroid().tolist(), force, moment)
-        output.SetFromVector([number for F in wrenches for number in foot_force(F[3:], F[:3]).vector])
+        right, left = (foot_force(F[3:], F[:3]).vector for F in wrenches)
+        output.SetFromVector(np.array((*right, *left)))
 
     def _foot(self, body_A: BodyIndex | int, body_B: BodyIndex | int) -> tuple[int, float] | None:
         """The foot that touches the ground, and the sign that makes a force on B one on the foot; None if none does."""

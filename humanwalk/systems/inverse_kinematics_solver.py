@@ -100,7 +100,7 @@ class InverseKinematicsSolver(LeafSystem):
     def _initialize(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         desired, *_, previous_time = self._groups
         start = context.get_discrete_state(desired).value()
-        discrete.set_value(previous_time, [context.get_time()])
+        discrete.set_value(previous_time, np.array([context.get_time()]))
         return self._solve_from(start[: self._n] + self._bent_knees, context, discrete)
 
     def _solve(self, context: Context, discrete: DiscreteValues) -> EventStatus:
@@ -124,7 +124,7 @@ class InverseKinematicsSolver(LeafSystem):
             v[places] = joint_velocity(leg, solution.theta, self._V[side].Eval(context).get_coeffs(), self._parameters)
             report[i::2] = solution.residual, solution.iterations, solution.converged
         discrete.set_value(desired, found)
-        discrete.set_value(sample_time, [context.get_time() + self._preview])
+        discrete.set_value(sample_time, np.array([context.get_time() + self._preview]))
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
 

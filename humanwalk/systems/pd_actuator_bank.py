@@ -164,7 +164,7 @@ class PdActuatorBank(LeafSystem):
 
     def _calc_driving_times(self, context: Context, output: BasicVector) -> None:
         piece: HermitePiece = self._driving_piece.Eval(context)
-        output.SetFromVector([piece.t0, piece.t1])
+        output.SetFromVector(np.array((piece.t0, piece.t1)))
 
     def _driving(self, desired: Array) -> Array:
         """kp q_d + kd v_d of desired states (..., 2n), shape (..., n)."""
