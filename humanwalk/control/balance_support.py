@@ -60,7 +60,7 @@ class BalanceSupportParameters:
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force [torque; force] on the pelvis at Po, in W, shape (6,) [N m, N].
 
-    All arrays may be of Drake's symbolic expressions.
+    Its two parts that are not linear take Drake's symbolic expressions, too.
 
     Args:
         q_WP: pose of the pelvis as Drake's floating base has it, [quaternion wxyz; position [m]], shape (7,); the
@@ -69,43 +69,42 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
         reference: both of the reference, [q; V], shape (13,).
         parameters: stiffness and damping.
     """
-    return wrench_of_error(error_of_reference(q_WP, V_WP, reference), parameters)
-
-
-def error_of_reference(q_WP: Array, V_WP: Array, reference: Array) -> Array:
-    """How far the pelvis is off its reference, arguments as of `support_wrench`.
-
-    Returns:
-        Quaternion wxyz in W that leads from the reference's orientation to the pelvis', not normalised, then
-        differences of position [m] and of spatial velocity [rad/s, m/s]; shape (13,).
-    """
-    w, x, y, z = q_WP[:4]
-    a, b, c, d = reference[:4]
-    # The product of the one with the conjugate of the other.
-    turn = (
-        w * a + x * b + y * c + z * d,
-        -w * b + x * a - y * d + z * c,
-        -w * c + x * d + y * a - z * b,
-        -w * d - x * c + y * b + z * a,
+    off = np.concatenate((q_WP[4:], V_WP)) - reference[4:]
+    wrench: Array = (
+        turning_wrench(relative_quaternion(q_WP[:4], reference[:4]), parameters) + linear_gain(parameters) @ off
     )
-    return np.array((*turn, *(q_WP[4:] - reference[4:7]), *(V_WP - reference[7:])))
-
-
-def wrench_of_error(error: Array, parameters: BalanceSupportParameters) -> Array:
-    """Spatial force of `support_wrench` for an error of `error_of_reference`, shape (6,)."""
-    K, D = parameters.diagonals
-    wrench: Array = -K * np.array((*_rotation_vector(error[:4]), *error[4:7])) - D * error[7:]
     return wrench
 
 
-def _rotation_vector(wxyz: Array) -> tuple[float, float, float]:
-    """Rotation vector [rad] of a quaternion that need not be normalised, the shorter way."""
+def linear_gain(parameters: BalanceSupportParameters) -> Array:
+    """What the support makes of differences of position [m] and of spatial velocity [rad/s, m/s]; shape (6, 9)."""
+    K, D = parameters.diagonals
+    return np.hstack((-np.diag(K)[:, 3:], -np.diag(D)))
+
+
+def relative_quaternion(wxyz: Array, wxyz_reference: Array) -> Array:
+    """Quaternion in W that leads from the reference's orientation to the other one, not normalised; shape (4,)."""
+    w, x, y, z = wxyz
+    a, b, c, d = wxyz_reference
+    # The product of the one with the conjugate of the other.
+    return np.array(
+        (
+            w * a + x * b + y * c + z * d,
+            -w * b + x * a - y * d + z * c,
+            -w * c + x * d + y * a - z * b,
+            -w * d - x * c + y * b + z * a,
+        )
+    )
+
+
+def turning_wrench(wxyz: Array, parameters: BalanceSupportParameters) -> Array:
+    """What the support makes of a quaternion, which need not be normalised: torque the shorter way; shape (6,)."""
     cosine, i, j, k = wxyz
     # Near no rotation at all angle / sine goes to 2 / cosine.
     sine = max_(sqrt(i * i + j * j + k * k), 1e-12)
     # A quaternion and its negative are one orientation: both are multiplied by the cosine, which makes it positive.
-    scale = 2.0 * atan2(sine * cosine, cosine * cosine) / sine
-    return scale * i, scale * j, scale * k
+    scale = -parameters.rotational_stiffness * 2.0 * atan2(sine * cosine, cosine * cosine) / sine
+    return np.array((scale * i, scale * j, scale * k, 0.0, 0.0, 0.0))
 
 
 def largest_support_step(
