@@ -107,10 +107,8 @@ class InverseKinematicsSolution:
 class LegKinematics:
     """The chain from a base frame to a tip frame through revolute joints of a plant.
 
-    Holds a context of its own, so one instance must not be shared between threads.
-
     Args:
-        plant: a finalised plant; joints that are not in `joint_names` stay at zero.
+        plant: a finalised plant, see `RevoluteChain.of`; joints that are not in `joint_names` stay at zero.
         base_frame: name of the frame P in which poses are measured.
         tip_frame: name of the frame S whose pose is wanted.
         joint_names: the chain's joints in the order of theta.
