@@ -93,7 +93,7 @@ class Recorder:
 
     Attributes:
         ports: the exported ports that are logged, and their sizes.
-        sink: the log sink of all of these, one after the other: every system more costs in every step.
+        sink: the log sink of all of these, one after the other: one event a sample, not one a port.
         derived: what follows from these.
         columns: names of the columns of every recorded port, logged and derived, in the order of the table.
     """
