@@ -47,6 +47,7 @@ def bench() -> str:
     return (
         table(["scenario", *(heading for heading, _, _ in COLUMNS)], rows)
         + f"\n\n{measured_on(result.machine)} Repeats: {result.repeats}, of {seconds:g} s."
+        + ("" if result.complete else f" Not complete: {result.progress}.")
     )
 
 

@@ -60,7 +60,7 @@ class BalanceSupportParameters:
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force [torque; force] on the pelvis at Po, in W, shape (6,) [N m, N].
 
-    All arrays may be of Drake's symbolic expressions.
+    Its two parts that are not linear take Drake's symbolic expressions, too.
 
     Args:
         q_WP: pose of the pelvis as Drake's floating base has it, [quaternion wxyz; position [m]], shape (7,); the
@@ -69,26 +69,42 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
         reference: both of the reference, [q; V], shape (13,).
         parameters: stiffness and damping.
     """
-    K, D = parameters.diagonals
-    error = np.array((*_rotation_vector(q_WP[:4], reference[:4]), *(q_WP[4:] - reference[4:7])))
-    wrench: Array = -K * error - D * (V_WP - reference[7:])
+    off = np.concatenate((q_WP[4:], V_WP)) - reference[4:]
+    wrench: Array = (
+        turning_wrench(relative_quaternion(q_WP[:4], reference[:4]), parameters) + linear_gain(parameters) @ off
+    )
     return wrench
 
 
-def _rotation_vector(wxyz: Array, wxyz_reference: Array) -> tuple[float, float, float]:
-    """Rotation vector [rad] in W that leads from the reference's orientation to the other one, the shorter way."""
+def linear_gain(parameters: BalanceSupportParameters) -> Array:
+    """What the support makes of differences of position [m] and of spatial velocity [rad/s, m/s]; shape (6, 9)."""
+    K, D = parameters.diagonals
+    return np.hstack((-np.diag(K)[:, 3:], -np.diag(D)))
+
+
+def relative_quaternion(wxyz: Array, wxyz_reference: Array) -> Array:
+    """Quaternion in W that leads from the reference's orientation to the other one, not normalised; shape (4,)."""
     w, x, y, z = wxyz
     a, b, c, d = wxyz_reference
     # The product of the one with the conjugate of the other.
-    cosine = w * a + x * b + y * c + z * d
-    i = -w * b + x * a - y * d + z * c
-    j = -w * c + x * d + y * a - z * b
-    k = -w * d - x * c + y * b + z * a
+    return np.array(
+        (
+            w * a + x * b + y * c + z * d,
+            -w * b + x * a - y * d + z * c,
+            -w * c + x * d + y * a - z * b,
+            -w * d - x * c + y * b + z * a,
+        )
+    )
+
+
+def turning_wrench(wxyz: Array, parameters: BalanceSupportParameters) -> Array:
+    """What the support makes of a quaternion, which need not be normalised: torque the shorter way; shape (6,)."""
+    cosine, i, j, k = wxyz
     # Near no rotation at all angle / sine goes to 2 / cosine.
     sine = max_(sqrt(i * i + j * j + k * k), 1e-12)
     # A quaternion and its negative are one orientation: both are multiplied by the cosine, which makes it positive.
-    scale = 2.0 * atan2(sine * cosine, cosine * cosine) / sine
-    return scale * i, scale * j, scale * k
+    scale = -parameters.rotational_stiffness * 2.0 * atan2(sine * cosine, cosine * cosine) / sine
+    return np.array((scale * i, scale * j, scale * k, 0.0, 0.0, 0.0))
 
 
 def largest_support_step(

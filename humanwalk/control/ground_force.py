@@ -1,5 +1,7 @@
 """From the forces at single contacts to what a force plate under each foot would show."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,50 +18,51 @@ class FootForce:
     """Ground reaction on one foot, in the world frame W.
 
     Attributes:
-        f_W: force [N], shape (3,).
-        p_WCop: centre of pressure on the ground plane [m], shape (3,); zero while unloaded.
+        f_W: force [N], three numbers.
+        p_WCop: centre of pressure on the ground plane [m], three numbers; zero while unloaded.
         free_moment: torque about the vertical through the centre of pressure [N m]; zero while unloaded.
         loaded: whether the vertical force exceeds UNLOADED_N.
     """
 
-    f_W: Array
-    p_WCop: Array
+    f_W: Sequence[float] | Array
+    p_WCop: Sequence[float]
     free_moment: float
     loaded: bool
 
     @property
-    def vector(self) -> Array:
-        """All of it in the order above, loaded as 1 or 0; shape (8,)."""
-        return np.concatenate((self.f_W, self.p_WCop, (self.free_moment, self.loaded)))
+    def vector(self) -> tuple[float, ...]:
+        """All of it in the order above, loaded as 1 or 0; eight numbers."""
+        return (*self.f_W, *self.p_WCop, self.free_moment, float(self.loaded))
 
 
-def foot_force(f_W: Array, tau_Wo: Array, ground_height: float = 0.0) -> FootForce:
+def foot_force(f_W: Sequence[float] | Array, tau_Wo: Sequence[float] | Array, ground_height: float = 0.0) -> FootForce:
     """Centre of pressure and free moment of a foot's whole contact wrench.
 
     Taken from the wrench and not from the centroid of a contact patch, which is another point (drake#22440).
 
     Args:
-        f_W: sum of the contact forces on the foot [N], shape (3,).
-        tau_Wo: their moment about the world origin [N m], shape (3,).
+        f_W: sum of the contact forces on the foot [N], three numbers.
+        tau_Wo: their moment about the world origin [N m], three numbers.
         ground_height: height of the level ground [m].
     """
-    if f_W[2] <= UNLOADED_N:
-        return FootForce(f_W, np.zeros(3), 0.0, False)
+    f_x, f_y, f_z = f_W
+    tau_x, tau_y, tau_z = tau_Wo
+    if f_z <= UNLOADED_N:
+        return FootForce(f_W, (0.0, 0.0, 0.0), 0.0, False)
     # On the plane z = ground_height the moment about the CoP has no horizontal part (Winter 2009, section 5.2.9).
-    x = (-tau_Wo[1] + ground_height * f_W[0]) / f_W[2]
-    y = (tau_Wo[0] + ground_height * f_W[1]) / f_W[2]
-    free_moment = tau_Wo[2] - (x * f_W[1] - y * f_W[0])
-    return FootForce(f_W, np.array([x, y, ground_height]), float(free_moment), True)
+    x = (-tau_y + ground_height * f_x) / f_z
+    y = (tau_x + ground_height * f_y) / f_z
+    return FootForce(f_W, (x, y, ground_height), tau_z - (x * f_y - y * f_x), True)
 
 
-def friction_use(f_t: Array, bound: float) -> float:
+def friction_use(f_t: Sequence[float] | Array, bound: float) -> float:
     """How much of the friction that the ground could give is used: 1 where the foot slides; 0 while unloaded.
 
     Args:
-        f_t: force along the ground [N], shape (2,) or (3,).
+        f_t: force along the ground [N], two or three numbers.
         bound: the most that it can be, mu times the normal force [N].
     """
-    return float(np.linalg.norm(f_t)) / bound if bound > UNLOADED_N else 0.0
+    return math.hypot(*f_t) / bound if bound > UNLOADED_N else 0.0
 
 
 def moments(points: Array, forces: Array) -> Array:

@@ -10,20 +10,22 @@ residual smaller; so a target out of reach gives the nearest pose, and says so.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
+from operator import mul
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable
 from scipy.linalg.lapack import dgesdd, dgesv
 
+from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
+Vector6 = tuple[float, ...]
 
 STEP_FRACTIONS = (1.0, 0.5, 0.25, 0.1, 0.03, 0.003)
 """Shares of a Newton step that are tried until one lessens the residual."""
@@ -79,6 +81,11 @@ class InverseKinematicsParameters:
         """Weights of the six rows of the residual [rotation; position]."""
         return np.repeat((self.orientation_weight, 1.0), 3)
 
+    @cached_property
+    def row_weights_column(self) -> Array:
+        """The same, shape (6, 1)."""
+        return self.row_weights[:, None]
+
 
 @dataclass(frozen=True)
 class InverseKinematicsSolution:
@@ -100,38 +107,25 @@ class InverseKinematicsSolution:
 class LegKinematics:
     """The chain from a base frame to a tip frame through revolute joints of a plant.
 
-    Holds a context of its own, so one instance must not be shared between threads.
-
     Args:
-        plant: a finalised plant; joints that are not in `joint_names` stay at zero.
+        plant: a finalised plant, see `RevoluteChain.of`; joints that are not in `joint_names` stay at zero.
         base_frame: name of the frame P in which poses are measured.
         tip_frame: name of the frame S whose pose is wanted.
         joint_names: the chain's joints in the order of theta.
     """
 
     def __init__(self, plant: MultibodyPlant, base_frame: str, tip_frame: str, joint_names: Sequence[str]) -> None:
-        self._plant = plant
-        self._context = plant.CreateDefaultContext()
-        self._P = plant.GetFrameByName(base_frame)
-        self._S = plant.GetFrameByName(tip_frame)
+        self._chain = RevoluteChain.of(plant, base_frame, tip_frame, joint_names)
         joints = [plant.GetJointByName(name) for name in joint_names]
         self.joint_names = tuple(joint_names)
-        self._q_index = np.array([joint.position_start() for joint in joints])
-        self._v_index = np.array([joint.velocity_start() for joint in joints])
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
-        self._q = plant.GetPositions(self._context)
-        self._q[self._q_index] = 0.0
-        self._is_at = b""
-        self._So = np.zeros(3)
+        # A pose is followed by its Jacobian.
+        self._at = lru_cache(maxsize=1)(self._chain.at)
 
-    def _set(self, theta: Array) -> None:
-        # A pose is followed by its Jacobian; set again, the same angles would make Drake work out both anew.
-        angles = theta.tobytes()
-        if angles != self._is_at:
-            self._q[self._q_index] = theta
-            self._plant.SetPositions(self._context, self._q)
-            self._is_at = angles
+    def state(self, theta: Array) -> ChainState:
+        """Where the chain is at joint angles theta [rad], shape (n,)."""
+        return self._at(tuple(theta.tolist()))
 
     def within_range(self, theta: Array) -> Array:
         """The nearest joint angles inside the joint ranges."""
@@ -141,16 +135,12 @@ class LegKinematics:
 
     def X_PS(self, theta: Array) -> RigidTransform:
         """Pose of the tip S in the base P at joint angles theta [rad], shape (n,)."""
-        self._set(theta)
-        return self._plant.CalcRelativeTransform(self._context, self._P, self._S)
+        x, y, z, p = self.state(theta).X_PS
+        return RigidTransform(RotationMatrix(np.array((x, y, z)).T), np.array(p))
 
     def Jv_V_PS(self, theta: Array) -> Array:
-        """Drake's Jacobian of the spatial velocity (rotation first) of S in P, expressed in P; (6, n)."""
-        self._set(theta)
-        J = self._plant.CalcJacobianSpatialVelocity(
-            self._context, JacobianWrtVariable.kV, self._S, self._So, self._P, self._P
-        )
-        return np.asarray(J[:, self._v_index])
+        """Jacobian of the spatial velocity (rotation first) of S in P, expressed in P; (6, n)."""
+        return self.state(theta).jacobian()
 
     def Jv_V_PS_numeric(self, theta: Array, step: float = 1e-6) -> Array:
         """The same Jacobian by central differences, as the thesis calculates it (section 1.4)."""
@@ -172,29 +162,34 @@ def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
 
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
-    # One number after the other crosses from C++ into Python at a price; the matrices cross whole.
-    return _pose_error(X.GetAsMatrix34(), X_desired.GetAsMatrix34())
+    return np.array(_pose_error(_axes_and_origin(X), _axes_and_origin(X_desired)))
 
 
-def _pose_error(A: Array, B: Array) -> Array:
-    error = np.empty(6)
-    error[:3] = _rotation_vector(A[:, :3] @ B[:, :3].T)
-    error[3:] = A[:, 3] - B[:, 3]
-    return error
+def _axes_and_origin(X: RigidTransform) -> Pose:
+    # One number after the other crosses from C++ into Python at a price; the matrix crosses whole.
+    x, y, z, p = X.GetAsMatrix34().T.tolist()
+    return x, y, z, p
 
 
-def _rotation_vector(R: Array) -> Array | tuple[float, float, float]:
-    """Axis times angle [rad] of a rotation matrix, shape (3,)."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()
-    x, y, z = zy - yz, xz - zx, yx - xy
-    sine2, cosine2 = math.sqrt(x * x + y * y + z * z), xx + yy + zz - 1.0
+def _pose_error(X: Pose, X_desired: Pose) -> Vector6:
+    # Sine and cosine of the angle, twice, from the antisymmetric part and the trace of R R_desired'.
+    x = y = z = 0.0
+    cosine2 = -1.0
+    for (a, b, c), (d, e, f) in zip(X[:3], X_desired[:3], strict=True):
+        x += e * c - f * b
+        y += f * a - d * c
+        z += d * b - e * a
+        cosine2 += a * d + b * e + c * f
+    sine2 = math.sqrt(x * x + y * y + z * z)
     if cosine2 < 0.0:
         # Beyond a right angle the antisymmetric part loses the axis.
-        angle_axis = RotationMatrix(R).ToAngleAxis()
-        far: Array = angle_axis.angle() * angle_axis.axis()
-        return far
-    scale = math.atan2(sine2, cosine2) / sine2 if sine2 > 1e-12 else 0.5
-    return scale * x, scale * y, scale * z
+        turn = RotationMatrix(np.array(X[:3]).T @ np.array(X_desired[:3])).ToAngleAxis()
+        x, y, z = turn.angle() * turn.axis()
+        scale = 1.0
+    else:
+        scale = math.atan2(sine2, cosine2) / sine2 if sine2 > 1e-12 else 0.5
+    (a, b, c), (d, e, f) = X[3], X_desired[3]
+    return scale * x, scale * y, scale * z, a - d, b - e, c - f
 
 
 def solve_inverse_kinematics(
@@ -233,34 +228,39 @@ def _iterate(
     parameters: InverseKinematicsParameters,
 ) -> tuple[InverseKinematicsSolution, float]:
     """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
-    weight = parameters.row_weights
-    desired = X_PS_desired.GetAsMatrix34()
+    weights = parameters.row_weights.tolist()
+    desired = _axes_and_origin(X_PS_desired)
+
+    def at(theta: Array) -> tuple[Vector6, Vector6, float]:
+        """Residual, weighted residual and its norm."""
+        error = _pose_error(leg.state(theta).X_PS, desired)
+        weighted = tuple(map(mul, weights, error))
+        return error, weighted, math.hypot(*weighted)
+
     theta = leg.within_range(theta_guess)
-    error = _pose_error(leg.X_PS(theta).GetAsMatrix34(), desired)
-    cost = _norm(weight * error)
+    error, weighted, cost = at(theta)
     iterations, pull = 0, parameters.neutral_pull
-    while _norm(error) > parameters.tolerance and iterations < parameters.max_iterations:
+    while math.hypot(*error) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
-        J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
-        step = _newton_step(leg, theta, J, weight * error, parameters.damping * cost, pull)
+        J = leg.jacobian(theta, parameters.jacobian) * parameters.row_weights_column
+        step = _newton_step(leg, theta, J, np.array(weighted), parameters.damping * cost, pull)
         longest = max(map(abs, step.tolist()))
         if longest > parameters.max_step:
             step *= parameters.max_step / longest
         # Shorten the step until it helps: far targets and joints at the end of their range bend the residual.
         for fraction in STEP_FRACTIONS:
             trial = leg.within_range(theta + fraction * step)
-            trial_error = _pose_error(leg.X_PS(trial).GetAsMatrix34(), desired)
-            trial_cost = _norm(weight * trial_error)
+            trial_error, trial_weighted, trial_cost = at(trial)
             if trial_cost < cost:
                 break
         gain = cost - trial_cost
         if gain > 0:
-            theta, error, cost = trial, trial_error, trial_cost
+            theta, error, weighted, cost = trial, trial_error, trial_weighted, trial_cost
         # A step with the pull in it says nothing about what a pure Newton step would gain.
         if gain < STATIONARY_GAIN * cost and not pull:
             break
         pull = 0.0
-    residual = _norm(error)
+    residual = math.hypot(*error)
     return InverseKinematicsSolution(theta, residual, iterations, residual <= parameters.tolerance), cost
 
 
@@ -269,33 +269,31 @@ def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, dampi
 
     def step_of(free: Indices | slice) -> Array:
         Jf = J[:, free]
-        damped = _inverse_of_square(Jf, damping, WELL_CONDITIONED)
-        plain = _inverse_of_square(Jf, 0.0, WELL_CONDITIONED) if pull else damped
+        square = Jf.dot(Jf.T)
+        damped = _inverse(square + damping * damping * _IDENTITY, WELL_CONDITIONED)
+        plain = _inverse(square, WELL_CONDITIONED) if pull else damped
         if damped is not None and plain is not None:
-            direct: Array = -Jf.T @ (damped @ error)
-            if pull:
-                direct -= pull * (theta[free] - Jf.T @ (plain @ (Jf @ theta[free])))
-            return direct
+            wanted, back = -damped.dot(error), pull * theta[free]
+            step: Array = (wanted + plain.dot(Jf.dot(back))).dot(Jf) - back if pull else wanted.dot(Jf)
+            return step
         U, s, Vt, _ = dgesdd(Jf)
         # The tiny constant keeps a posture that is exactly singular from dividing by zero.
         along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
         spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
-        step: Array = -along @ error - pull * spare.T @ (spare @ theta[free])
+        step = -along @ error - pull * spare.T @ (spare @ theta[free])
         return step
 
     return _of_free_joints(leg, theta, step_of)
 
 
-def _inverse_of_square(J: Array, damping: float, least: float) -> Array | None:
-    """(J J' + damping^2)^-1, or None where J, so damped, may have a singular value of `least` or below."""
-    square = J @ J.T
-    square.flat[:: len(J) + 1] += damping * damping
+def _inverse(square: Array, least: float) -> Array | None:
+    """The inverse of J J', or None where J may have a singular value of `least` or below."""
     *_, inverse, singular = dgesv(square, _IDENTITY)
     if singular:
         return None
     # The inverse's Frobenius norm is no less than the inverse square of the least singular value.
     entries = inverse.ravel(order="K")
-    return inverse if entries @ entries < least**-4 else None
+    return inverse if entries.dot(entries) < least**-4 else None
 
 
 _IDENTITY = np.eye(6)
@@ -324,11 +322,6 @@ def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices 
             result[free] = motion(free)
 
 
-def _norm(vector: Array) -> float:
-    """Euclidean norm; numpy's own costs more than all else in it."""
-    return math.sqrt(vector @ vector)
-
-
 def joint_velocity(
     leg: LegKinematics,
     theta: Array,
@@ -344,17 +337,17 @@ def joint_velocity(
         parameters: weights, and the floor that keeps the velocity finite near singular postures.
     """
     parameters = parameters or InverseKinematicsParameters()
-    weight = parameters.row_weights
-    J = weight[:, None] * leg.jacobian(theta, parameters.jacobian)
+    weighted = parameters.row_weights * V_PS_desired
+    J = leg.jacobian(theta, parameters.jacobian) * parameters.row_weights_column
 
     def velocity_of(free: Indices | slice) -> Array:
         Jf, floor = J[:, free], max(parameters.singular_value_floor, RANK_FLOOR)
-        direct = _inverse_of_square(Jf, 0.0, max(floor, WELL_CONDITIONED))
+        direct = _inverse(Jf.dot(Jf.T), max(floor, WELL_CONDITIONED))
         if direct is not None:
-            return np.asarray(Jf.T @ (direct @ (weight * V_PS_desired)))
+            return np.asarray(direct.dot(weighted).dot(Jf))
         U, s, Vt, _ = dgesdd(Jf, full_matrices=0)
         inverse = s / np.maximum(s, floor) ** 2
-        velocity: Array = (Vt.T * inverse) @ (U.T @ (weight * V_PS_desired))
+        velocity: Array = (Vt.T * inverse) @ (U.T @ weighted)
         return velocity
 
     return _of_free_joints(leg, theta, velocity_of)

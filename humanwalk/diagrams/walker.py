@@ -21,6 +21,7 @@ from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
@@ -30,7 +31,8 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
-    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance. A
+    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance; law where
+    the actuators' law is linear (semi-implicit without limits). A
     scenario that follows a recording has recording instead of gait, arms and inverse_kinematics; one with
     `contact: asperity` has foot_contact instead of foot_force_observer.
 
@@ -79,7 +81,14 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         reference = _add_gait(builder, scenario, human, bank, body, feet)
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    actuation = bank.get_actuation_output_port()
+    if bank.is_linear and not scenario.follow.file:
+        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp))
+        builder.Connect(bank.get_driving_output_port(), law.get_driving_input_port())
+        builder.Connect(bank.get_driving_times_output_port(), law.get_driving_times_input_port())
+        builder.Connect(plant.get_state_output_port(), law.get_state_input_port())
+        actuation = law.get_actuation_output_port()
+    builder.Connect(actuation, plant.get_actuation_input_port())
     if scenario.actuators.law == "implicit":
         builder.Connect(
             bank.get_plant_desired_state_output_port(),

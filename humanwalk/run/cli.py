@@ -264,19 +264,28 @@ def bench(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
     ] = None,
-    duration: Annotated[float, typer.Option(help="Simulated time of each [s].")] = 5.0,
-    repeats: Annotated[int, typer.Option(min=1, help="How often each is measured, in turn with the others.")] = 3,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="JSON file to write.")] = None,
+    duration: Annotated[float, typer.Option(help="Simulated time of each [s].")] = 2.5,
+    repeats: Annotated[int, typer.Option(min=1, help="How often each is measured, in turn with the others.")] = 2,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="JSON file, written anew after every repeat.")
+    ] = None,
     set_: SetOption = [],  # noqa: B006
     compare: Annotated[
         tuple[Path, Path] | None, typer.Option(metavar="OLD NEW", help="Measure nothing, compare two files of -o.")
     ] = None,
 ) -> None:
     """Measure what scenarios cost: plant, solvers, other systems, logging, start-up, memory."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
+    from humanwalk.run.bench import BenchResult, read_result, write_result
     from humanwalk.run.bench import bench as measure
-    from humanwalk.run.bench import read_result, write_result
     from humanwalk.run.bench.tables import comparison_table, cost_table, system_table
     from humanwalk.scenario import shipped_scenarios
 
@@ -287,24 +296,40 @@ def bench(
     if output is not None and not output.parent.is_dir():
         # Said now, not after the measuring.
         raise ParameterError(f"--output {output}: no such folder; allowed: a file in a folder that exists; make it")
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("repeats"))
-    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
+    overrides = {"duration": repr(duration)} | _overrides(set_)
+    found: BenchResult | None = None
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("repeats,"))
+    times = (TimeElapsedColumn(), TextColumn("gone,"), TimeRemainingColumn(), TextColumn("to go"))
+
+    def tell() -> None:
+        if found is None:
+            return
+        Console().print(cost_table(found), system_table(found))
+        if output is not None:
+            console.print(f"{output}", soft_wrap=True)
+
+    with Progress(*columns, *times, console=console, transient=True) as progress:
         task = progress.add_task("", total=None)
 
         def show(name: str, done: int, todo: int) -> None:
-            progress.update(task, description=name, completed=done, total=todo)
+            progress.update(task, description=f"measuring {name}", completed=done, total=todo)
+
+        def keep(result: BenchResult) -> None:
+            nonlocal found
+            found = result
+            if output is not None:
+                write_result(output, result)
 
         try:
-            overrides = {"duration": repr(duration)} | _overrides(set_)
-            result = measure(names or list(shipped_scenarios()), overrides, repeats, show)
-        except KeyboardInterrupt:
+            measure(names or list(shipped_scenarios()), overrides, repeats, show, keep)
+        except (KeyboardInterrupt, ParameterError) as end:
             progress.stop()
-            console.print("interrupted; nothing was written")
+            tell()
+            if isinstance(end, ParameterError):
+                raise
+            console.print(f"interrupted; {'nothing was measured' if found is None else f'kept {found.progress}'}")
             raise typer.Exit(INTERRUPTED) from None
-    Console().print(cost_table(result), system_table(result))
-    if output is not None:
-        write_result(output, result)
-        console.print(f"{output}", soft_wrap=True)
+    tell()
 
 
 @app.command()

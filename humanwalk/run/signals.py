@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
-from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
+from pydrake.systems.primitives import LogVectorOutput, Multiplexer, VectorLogSink
 
 from humanwalk.body import SIDES
 from humanwalk.control.joint_map import JointMap
@@ -92,12 +92,14 @@ class Recorder:
     """What is recorded of a walker inside a root diagram.
 
     Attributes:
-        sinks: log sinks on exported ports, by the port's name.
+        ports: the exported ports that are logged, and their sizes.
+        sink: the log sink of all of these, one after the other: one event a sample, not one a port.
         derived: what follows from these.
-        columns: names of the columns of every recorded port, sinks' and derived, in the order of the table.
+        columns: names of the columns of every recorded port, logged and derived, in the order of the table.
     """
 
-    sinks: dict[str, VectorLogSink]
+    ports: dict[str, int]
+    sink: VectorLogSink
     derived: list[Derived]
     columns: dict[str, list[str]]
 
@@ -109,10 +111,11 @@ class Recorder:
         known = {WHEN, *(port for one in derived for port in one.ports)}
         asked = [port for port in columns if port not in known]
         needed = [port for one in derived for port in one.needs if port not in known]
-        sinks = {
-            port: LogVectorOutput(walker.GetOutputPort(port), builder, period) for port in dict.fromkeys(asked + needed)
-        }
-        return Recorder(sinks, derived, columns)
+        ports = {port: walker.GetOutputPort(port).size() for port in dict.fromkeys(asked + needed)}
+        every = builder.AddSystem(Multiplexer(list(ports.values())))
+        for place, port in enumerate(ports):
+            builder.Connect(walker.GetOutputPort(port), every.get_input_port(place))
+        return Recorder(ports, LogVectorOutput(every.get_output_port(), builder, period), derived, columns)
 
     def table(self, context: Context) -> pa.Table:
         """Everything recorded so far; also after a simulation that ended early.
@@ -120,14 +123,14 @@ class Recorder:
         Args:
             context: root context of the simulation.
         """
-        logs = {port: sink.FindLog(context) for port, sink in self.sinks.items()}
-        rows = min(log.num_samples() for log in logs.values())
-        if rows == 0:
+        log = self.sink.FindLog(context)
+        if log.num_samples() == 0:
             return pa.table(
                 {name: np.empty(0) for name in (TIME, *(n for names in self.columns.values() for n in names))}
             )
-        time: Array = next(iter(logs.values())).sample_times()[:rows].copy()
-        record = {port: log.data()[:, :rows].T.copy() for port, log in logs.items()} | {WHEN: time}
+        time: Array = log.sample_times().copy()
+        ends = np.cumsum(list(self.ports.values()))
+        record = dict(zip(self.ports, np.split(log.data().T.copy(), ends[:-1], axis=1), strict=True)) | {WHEN: time}
         for one in self.derived:
             record |= zip(one.ports, one.calculate(*(record[need] for need in one.needs)), strict=True)
         data: dict[str, Array] = {TIME: time}

@@ -4,18 +4,19 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable
 from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
-from pydrake.systems.primitives import MatrixGain, Multiplexer, SymbolicVectorSystem
+from pydrake.systems.primitives import Adder, Demultiplexer, Multiplexer, SparseMatrixGain, SymbolicVectorSystem
 from scipy.linalg import block_diag
+from scipy.sparse import csc_matrix
 
-from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+from humanwalk.control.balance_support import BalanceSupportParameters, linear_gain, relative_quaternion, turning_wrench
 
 
 class BalanceSupport(Diagram):
     """A spatial spring-damper that holds the pelvis on the walking reference.
 
     It stands for the balance controller that the thesis assumes; a walk that needs it does not balance. Its wrench
-    is an output so that nobody takes it for balance. The plant asks for it in every step, so the law is handed to
-    Drake as an expression and no Python is run.
+    is an output so that nobody takes it for balance. The plant asks for it in every step, so the law is made of
+    Drake's own blocks, with expressions for what is not linear, and no Python is run.
 
     Inputs:
         pelvis_reference: (13) where the pelvis should be in W, as Drake's floating base has it: quaternion wxyz,
@@ -33,22 +34,37 @@ class BalanceSupport(Diagram):
         super().__init__()
         pelvis = plant.GetBodyByName("Pelvis")
         first_q, first_v = pelvis.floating_positions_start(), pelvis.floating_velocities_start_in_v()
-        of_velocities = np.eye(plant.num_velocities())[first_v : first_v + 6]
-        of_state = block_diag(np.eye(plant.num_positions())[first_q : first_q + 7], of_velocities)
+        n, of_velocities = plant.num_positions(), slice(first_v, first_v + 6)
+        selected = block_diag(
+            np.eye(13), np.eye(n)[first_q : first_q + 7], np.eye(plant.num_velocities())[of_velocities]
+        )
+        linear = linear_gain(parameters)
+        # From reference and motion of the pelvis: both quaternions, then what is linear.
+        quaternions = np.eye(26)[[*range(13, 17), *range(4)]]
+        gains = np.vstack((quaternions, np.hstack((np.zeros((6, 4)), -linear, np.zeros((6, 4)), linear))))
         builder = DiagramBuilder()
-        pelvis_motion = builder.AddSystem(MatrixGain(of_state))
-        motions = builder.AddSystem(Multiplexer([13, 13]))
-        x = MakeVectorContinuousVariable(26, "x")
+        inputs = builder.AddSystem(Multiplexer([13, plant.num_multibody_states()]))
+        parts = builder.AddSystem(SparseMatrixGain(csc_matrix(gains @ selected)))
+        split = builder.AddSystem(Demultiplexer([8, 6]))
+        q, turn = MakeVectorContinuousVariable(8, "q"), MakeVectorContinuousVariable(4, "turn")
         # Drake's expressions raise the processor's flag for numbers that are none, which NumPy would report.
         with np.errstate(invalid="ignore"):
-            law = support_wrench(x[13:20], x[20:], x[:13], parameters)
-        wrench = builder.AddSystem(SymbolicVectorSystem(input=x, output=law))
-        force = builder.AddSystem(MatrixGain(of_velocities.T))
-        builder.Connect(pelvis_motion.get_output_port(), motions.get_input_port(1))
-        builder.Connect(motions.get_output_port(), wrench.get_input_port())
+            relative, law = relative_quaternion(q[:4], q[4:]), turning_wrench(turn, parameters)
+        # Numbers are cheap in matrices and dear in expressions, and in one expression the relative quaternion would be
+        # worked out anew wherever it stands.
+        rotation = builder.AddSystem(SymbolicVectorSystem(input=q, output=relative))
+        turning = builder.AddSystem(SymbolicVectorSystem(input=turn, output=law))
+        wrench = builder.AddSystem(Adder(2, 6))
+        force = builder.AddSystem(SparseMatrixGain(csc_matrix(np.eye(plant.num_velocities())[:, of_velocities])))
+        builder.Connect(inputs.get_output_port(), parts.get_input_port())
+        builder.Connect(parts.get_output_port(), split.get_input_port())
+        builder.Connect(split.get_output_port(0), rotation.get_input_port())
+        builder.Connect(rotation.get_output_port(), turning.get_input_port())
+        builder.Connect(turning.get_output_port(), wrench.get_input_port(0))
+        builder.Connect(split.get_output_port(1), wrench.get_input_port(1))
         builder.Connect(wrench.get_output_port(), force.get_input_port())
-        builder.ExportInput(motions.get_input_port(0), "pelvis_reference")
-        builder.ExportInput(pelvis_motion.get_input_port(), "state")
+        builder.ExportInput(inputs.get_input_port(0), "pelvis_reference")
+        builder.ExportInput(inputs.get_input_port(1), "state")
         builder.ExportOutput(wrench.get_output_port(), "wrench")
         builder.ExportOutput(force.get_output_port(), "generalized_force")
         builder.BuildInto(self)

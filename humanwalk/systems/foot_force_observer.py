@@ -78,8 +78,8 @@ class FootForceObserver(LeafSystem):
                 foot, sign = found
                 force, moment = F_Ac_W.translational().tolist(), F_Ac_W.rotational().tolist()
                 _add(wrenches[foot], sign, surface.centroid().tolist(), force, moment)
-        F_Wo = np.array(wrenches)
-        output.SetFromVector(np.concatenate([foot_force(F[3:], F[:3]).vector for F in F_Wo]))
+        right, left = (foot_force(F[3:], F[:3]).vector for F in wrenches)
+        output.SetFromVector(np.array((*right, *left)))
 
     def _foot(self, body_A: BodyIndex | int, body_B: BodyIndex | int) -> tuple[int, float] | None:
         """The foot that touches the ground, and the sign that makes a force on B one on the foot; None if none does."""
@@ -108,7 +108,7 @@ class FootForceObserver(LeafSystem):
 
 def friction_used(foot_forces: Array) -> list[float]:
     """Output friction_use (2) from the other output (16)."""
-    return [friction_use(foot[:2], FRICTION * foot[2]) for foot in foot_forces.reshape(2, 8)]
+    return [friction_use(foot[:2], FRICTION * foot[2]) for foot in foot_forces.reshape(2, 8).tolist()]
 
 
 def _add(wrench: list[float], sign: float, p: list[float], f: list[float], moment: Sequence[float] = (0, 0, 0)) -> None:

@@ -100,7 +100,7 @@ class InverseKinematicsSolver(LeafSystem):
     def _initialize(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         desired, *_, previous_time = self._groups
         start = context.get_discrete_state(desired).value()
-        discrete.set_value(previous_time, [context.get_time()])
+        discrete.set_value(previous_time, np.array([context.get_time()]))
         return self._solve_from(start[: self._n] + self._bent_knees, context, discrete)
 
     def _solve(self, context: Context, discrete: DiscreteValues) -> EventStatus:
@@ -114,11 +114,8 @@ class InverseKinematicsSolver(LeafSystem):
 
     def _solve_from(self, warm: Array, context: Context, discrete: DiscreteValues) -> EventStatus:
         desired, sample_time, status, *_ = self._groups
-        if self._posture.HasValue(context):
-            posture = self._posture.Eval(context)
-            q, v = posture[: self._n], posture[self._n :]
-        else:
-            q, v = np.zeros(self._n), np.zeros(self._n)
+        found = self._posture.Eval(context) if self._posture.HasValue(context) else np.zeros(2 * self._n)
+        q, v = found[: self._n], found[self._n :]
         report = np.empty(6)
         for i, side in enumerate(SIDES):
             leg, places = self._legs[side], self._places[side]
@@ -126,8 +123,8 @@ class InverseKinematicsSolver(LeafSystem):
             q[places] = solution.theta
             v[places] = joint_velocity(leg, solution.theta, self._V[side].Eval(context).get_coeffs(), self._parameters)
             report[i::2] = solution.residual, solution.iterations, solution.converged
-        discrete.set_value(desired, np.concatenate((q, v)))
-        discrete.set_value(sample_time, [context.get_time() + self._preview])
+        discrete.set_value(desired, found)
+        discrete.set_value(sample_time, np.array([context.get_time() + self._preview]))
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
 

@@ -7,7 +7,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
-from humanwalk.control.hermite import HermitePiece
+from humanwalk.control.hermite import ROWS, HermitePiece
 from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
 from humanwalk.control.stability import round_down
@@ -59,6 +59,9 @@ class PdActuatorBank(LeafSystem):
             gains; for the plant's desired_state port (implicit law only). Rates are 0 for a continuous plant.
         actuation: (n) torque for the plant's actuation port [N m]: the feed-forward (implicit), with kd v_d for a
             continuous plant; the whole law clipped to the effort limits (explicit), plus kd v (semi-implicit).
+        driving (6n), driving_times (2): torque of the desired state and feed-forward, the actuation without -kp q, as
+            rows and times [s] of a HermitePiece, which change with the samples; for a LinearLaw. Only where the
+            law is linear, semi-implicit without limits; they need sample times.
         torque: (n) what the joints feel of the law [N m]: net_actuation, less kd v (semi-implicit).
         saturated: (n) 1 where a joint feels its effort limit, else 0.
     """
@@ -130,6 +133,14 @@ class PdActuatorBank(LeafSystem):
         self._actuation_output = self.DeclareVectorOutputPort(
             "actuation", n, self._calc_actuation, prerequisites_of_calc=needs
         )
+        if self.is_linear:
+            of_piece = {self._driving_piece.ticket()}
+            self._driving_output = self.DeclareVectorOutputPort(
+                "driving", ROWS * n, self._calc_driving_rows, prerequisites_of_calc=of_piece
+            )
+            self._driving_times_output = self.DeclareVectorOutputPort(
+                "driving_times", 2, self._calc_driving_times, prerequisites_of_calc=of_piece
+            )
         felt = {
             self.input_port_ticket(self._net_actuation.get_index()),
             self.input_port_ticket(self._state.get_index()),
@@ -146,29 +157,28 @@ class PdActuatorBank(LeafSystem):
         piece.set_value(_piece_of(*samples))
 
     def _calc_driving_piece(self, context: Context, piece: Value) -> None:
-        feedforward = self._fed_forward(context)
-        piece.set_value(self._piece.Eval(context).mapped(lambda rows: self._driving(rows, feedforward)))
+        piece.set_value(self._piece.Eval(context).mapped(self._driving, self._fed_forward(context)))
 
-    def _driving(self, desired: Array, feedforward: Array | None) -> Array:
-        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state.
+    def _calc_driving_rows(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._driving_piece.Eval(context).rows.ravel())
 
-        Args:
-            desired: (k, 2n) the desired state, or its coefficients of powers of time, the constant ones first.
-            feedforward: (n) if any.
-        """
+    def _calc_driving_times(self, context: Context, output: BasicVector) -> None:
+        piece: HermitePiece = self._driving_piece.Eval(context)
+        output.SetFromVector(np.array((piece.t0, piece.t1)))
+
+    def _driving(self, desired: Array) -> Array:
+        """kp q_d + kd v_d of desired states (..., 2n), shape (..., n)."""
         n = self._kp.size
-        tau: Array = self._kp * desired[:, :n] + self._kd * desired[:, n:]
-        if feedforward is not None:
-            tau[0] += feedforward
+        tau: Array = self._kp * desired[..., :n] + self._kd * desired[..., n:]
         return tau
 
     def _driving_torque(self, context: Context) -> Array:
+        """kp q_d + kd v_d + feedforward, all of the law that is not of the measured state."""
         if self._sample_time.HasValue(context):
             piece: HermitePiece = self._driving_piece.Eval(context)
             return piece.at(context.get_time())
-        desired: Array = self._desired.Eval(context)
-        now: Array = self._driving(desired[None], self._fed_forward(context))[0]
-        return now
+        tau, feedforward = self._driving(self._desired.Eval(context)), self._fed_forward(context)
+        return tau if feedforward is None else tau + feedforward
 
     def _held(self, context: Context) -> Array:
         """Desired state of now."""
@@ -252,6 +262,11 @@ class PdActuatorBank(LeafSystem):
         return self._law
 
     @property
+    def is_linear(self) -> bool:
+        """Whether the actuation is linear in state and desired state: semi-implicit and without limits."""
+        return self._law == "semi_implicit" and not self._limited
+
+    @property
     def limited(self) -> bool:
         """Whether any joint has an effort limit."""
         return self._limited
@@ -295,6 +310,14 @@ class PdActuatorBank(LeafSystem):
     def get_actuation_output_port(self) -> OutputPort:
         """Output actuation."""
         return self._actuation_output
+
+    def get_driving_output_port(self) -> OutputPort:
+        """Output driving (linear law only)."""
+        return self._driving_output
+
+    def get_driving_times_output_port(self) -> OutputPort:
+        """Output driving_times (linear law only)."""
+        return self._driving_times_output
 
     def get_torque_output_port(self) -> OutputPort:
         """Output torque."""

@@ -11,6 +11,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from humanwalk.quantity import ParameterError
+from humanwalk.run.bench import measure, read_result
 from humanwalk.run.cli import app, main
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario, shipped_scenarios
@@ -252,6 +254,52 @@ def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_pat
     code, out, _ = humanwalk("bench", "--compare", "new.json", "new.json")
     assert code == 0
     assert "1.00" in out
+
+
+@pytest.fixture
+def measured_until(monkeypatch):
+    """Repeats of a benchmark that cost one second each, and an error instead of the one with that place."""
+
+    def set_(place, error):
+        repeats = iter(range(100))
+
+        def repeat(scenario, overrides):
+            if next(repeats) == place:
+                raise error
+            turns = {name: [(1.0, 1.0)] for name in ("full", "unrecorded", "bare")}
+            return {"startup_s": 1.0, "peak_memory_MB": 1.0, "profile": {}, "turns": turns}
+
+        monkeypatch.setattr(measure, "_repeat", repeat)
+
+    return set_
+
+
+def test_interrupted_bench_keeps_what_there_is(humanwalk, measured_until, tmp_path):
+    measured_until(3, KeyboardInterrupt())
+    code, out, err = humanwalk("bench", "stand", "walk", "--repeats", "2", "-o", "new.json")
+    assert code == 130
+    assert "not complete: 3 of 4 repeats" in out
+    assert "interrupted; kept 3 of 4 repeats" in err
+    assert read_result(tmp_path / "new.json").done == {"stand": 2, "walk": 1}
+    code, out, _ = humanwalk("bench", "--compare", "new.json", "new.json")
+    assert code == 0
+    assert "old has 3 of 4 repeats" in out
+
+
+def test_bench_interrupted_at_once_says_that_there_is_nothing(humanwalk, measured_until, tmp_path):
+    measured_until(0, KeyboardInterrupt())
+    code, _, err = humanwalk("bench", "stand", "-o", "new.json")
+    assert code == 130
+    assert "nothing was measured" in err
+    assert not (tmp_path / "new.json").exists()
+
+
+def test_bench_that_fails_keeps_what_was_measured_before(humanwalk, measured_until, tmp_path):
+    measured_until(1, ParameterError("walk: fell; allowed: none"))
+    code, _, err = humanwalk("bench", "stand", "walk", "-o", "new.json")
+    assert code not in (0, 130)
+    assert "walk: fell" in err
+    assert list(read_result(tmp_path / "new.json").scenarios) == ["stand"]
 
 
 def test_bench_into_no_folder_is_refused_before_it_measures(refusal):

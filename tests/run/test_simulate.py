@@ -223,15 +223,15 @@ def test_interrupt_ends_a_run_and_keeps_its_signals():
 
 
 def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch):
-    calculate = PdActuatorBank._calc_actuation
+    calculate = PdActuatorBank._calc_piece
     plant = kinematics_plant(Subject())
 
-    def run_away(self, context, output):
+    def run_away(self, context, piece):
         if context.get_time() >= 0.05:
             plant.SetPositions(plant.CreateDefaultContext(), np.full(plant.num_positions(), np.nan))
-        calculate(self, context, output)
+        calculate(self, context, piece)
 
-    monkeypatch.setattr(PdActuatorBank, "_calc_actuation", run_away)
+    monkeypatch.setattr(PdActuatorBank, "_calc_piece", run_away)
     outcome = simulate(thesis(1.0))
     assert outcome.end.startswith("solver failed:")
     assert len(outcome.end.splitlines()) == 1

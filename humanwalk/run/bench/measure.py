@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ def bench(
     overrides: Mapping[str, str],
     repeats: int,
     on_progress: Callable[[str, int, int], None] = lambda name, done, all_: None,
+    on_result: Callable[[BenchResult], None] = lambda result: None,
 ) -> BenchResult:
     """Measure scenarios, each repeat in a process of its own on one core, repeats of all scenarios interleaved.
 
@@ -36,6 +38,7 @@ def bench(
         overrides: see `load_scenario`; the duration, too.
         repeats: how often each is measured.
         on_progress: called before each repeat with the scenario, the repeats done and those of all scenarios.
+        on_result: called after each repeat with what was found so far.
 
     Raises:
         ParameterError: a scenario cannot be simulated for so long, in one line.
@@ -43,12 +46,20 @@ def bench(
     durations = {scenario: load_scenario(scenario, overrides).duration for scenario in scenarios}
     found: dict[str, list[dict[str, Any]]] = {scenario: [] for scenario in durations}
     todo = len(found) * repeats
+    result = BenchResult({}, repeats, dict.fromkeys(found, 0), dict(overrides), machine())
     for repeat in range(repeats):
         for place, scenario in enumerate(found):
             on_progress(scenario, repeat * len(found) + place, todo)
             found[scenario].append(_repeat(scenario, overrides))
-    costs = {scenario: put_together(measures, durations[scenario]) for scenario, measures in found.items()}
-    return BenchResult(costs, repeats, dict(overrides), machine())
+            cost = put_together(found[scenario], durations[scenario])
+            result = replace(
+                result,
+                scenarios=result.scenarios | {scenario: cost},
+                done=result.done | {scenario: repeat + 1},
+                machine=machine(),
+            )
+            on_result(result)
+    return result
 
 
 def _repeat(scenario: str, overrides: Mapping[str, str]) -> dict[str, Any]:

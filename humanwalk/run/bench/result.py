@@ -60,12 +60,31 @@ class ScenarioCost:
 
 @dataclass(frozen=True)
 class BenchResult:
-    """Costs by scenario, and what they were measured on."""
+    """Costs by scenario, and what they were measured on.
+
+    Attributes:
+        scenarios: of those that were measured at least once.
+        repeats: how often each was to be measured.
+        done: how often each that was asked for was measured.
+        overrides: of all of them, see `load_scenario`.
+        machine: see `machine`.
+    """
 
     scenarios: dict[str, ScenarioCost]
     repeats: int
+    done: dict[str, int]
     overrides: dict[str, str]
     machine: dict[str, Any]
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything that was asked for was measured as often as it was to be."""
+        return all(done == self.repeats for done in self.done.values())
+
+    @property
+    def progress(self) -> str:
+        """How much of it is there: "5 of 24 repeats"."""
+        return f"{sum(self.done.values())} of {self.repeats * len(self.done)} repeats"
 
 
 def machine() -> dict[str, Any]:
@@ -97,6 +116,8 @@ def read_result(path: Path) -> BenchResult:
         data = json.loads(path.read_text(encoding="utf-8"))
         if not isinstance(data, dict) or data.pop("kind", None) != KIND:
             raise ValueError
+        # Before results were written as they came, there were whole ones only.
+        data.setdefault("done", dict.fromkeys(data["scenarios"], data["repeats"]))
         data["scenarios"] = {name: _scenario_cost(cost) for name, cost in data["scenarios"].items()}
         return BenchResult(**data)
     except OSError as error:

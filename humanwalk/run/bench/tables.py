@@ -29,7 +29,10 @@ share of it; `x real` the real-time factor."""
 def cost_table(result: BenchResult) -> Table:
     """Costs by scenario."""
     of = result.machine
-    table = _table(f"ms for a simulated second, median of {result.repeats}; {of['processor']}, load {of['load']:.1f}")
+    part = "" if result.complete else f", not complete: {result.progress}"
+    table = _table(
+        f"ms for a simulated second, median of {result.repeats}{part}; {of['processor']}, load {of['load']:.1f}"
+    )
     for name, cost in result.scenarios.items():
         table.add_row(name, *(format(value(cost), form) for _, value, form in COLUMNS))
     return table
@@ -66,6 +69,7 @@ def ratios(old: BenchResult, new: BenchResult) -> dict[str, dict[str, float | No
 def comparison_table(old: BenchResult, new: BenchResult) -> Table:
     """Ratios new/old by scenario; says where the two were not measured alike."""
     differs = _differences(old, new)
+    differs += [f"{which} has {one.progress}" for which, one in (("old", old), ("new", new)) if not one.complete]
     table = _table("new / old" + (f"; not measured alike: {', '.join(differs)}" if differs else ""))
     for name, row in ratios(old, new).items():
         table.add_row(name, *("-" if value is None else format(value, ".2f") for value in row.values()))

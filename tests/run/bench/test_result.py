@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from humanwalk.quantity import ParameterError
-from humanwalk.run.bench import BenchResult, ScenarioCost, read_result, write_result
+from humanwalk.run.bench import BenchResult, ScenarioCost, measure, read_result, write_result
 from humanwalk.run.bench.measure import bench, put_together
 from humanwalk.run.bench.profile import UPSTREAM
 from humanwalk.run.bench.result import machine
@@ -33,7 +33,8 @@ COST = put_together(
     [repeat([0.05, 0.06], [0.04, 0.05], [0.02, 0.03], InverseKinematicsSolver=0.01, GaitPlanner=0.004, upstream=9.0)],
     duration=0.2,
 )
-RESULT = BenchResult({"thesis": COST}, 1, {"duration": "0.2"}, machine())
+RESULT = BenchResult({"thesis": COST}, 1, {"thesis": 1}, {"duration": "0.2"}, machine())
+PART = replace(RESULT, repeats=2, done={"thesis": 1, "walk": 0})
 
 
 def test_the_parts_of_a_cost():
@@ -68,6 +69,25 @@ def test_what_disturbs_one_turn_of_one_repeat_does_not_count():
 def test_a_file_holds_the_whole_result(tmp_path):
     write_result(tmp_path / "bench.json", RESULT)
     assert read_result(tmp_path / "bench.json") == RESULT
+
+
+def test_a_file_of_before_results_came_in_parts_holds_a_whole_one(tmp_path):
+    file = tmp_path / "bench.json"
+    write_result(file, RESULT)
+    data = json.loads(file.read_text())
+    del data["done"]
+    file.write_text(json.dumps(data))
+    assert read_result(file) == RESULT
+
+
+def test_what_is_not_complete_says_so(tmp_path):
+    assert RESULT.complete
+    assert not PART.complete
+    write_result(tmp_path / "bench.json", PART)
+    assert read_result(tmp_path / "bench.json") == PART
+    assert "not complete: 1 of 4 repeats" in cost_table(PART).title
+    assert "complete" not in cost_table(RESULT).title
+    assert "new has 1 of 4 repeats" in comparison_table(RESULT, PART).title
 
 
 @pytest.mark.parametrize(
@@ -134,6 +154,24 @@ def test_tables_have_a_row_for_every_scenario_and_fit_a_terminal():
         assert f"{name} " in text
         assert all(f"{system} " in text for system in cost.by_system)
     assert all(word in text for heading, _, _ in COLUMNS for word in heading.split())
+
+
+def test_results_come_after_every_repeat(monkeypatch):
+    """Scenarios by turns; what is there of one is its cost so far."""
+    costs = iter([0.1, 0.5, 0.3, 0.7])
+    monkeypatch.setattr(measure, "_repeat", lambda scenario, overrides: repeat(*[[next(costs)]] * 3))
+    results = []
+    final = bench(["thesis", "walk"], {"duration": "1"}, 2, on_result=results.append)
+    assert [result.done for result in results] == [
+        {"thesis": 1, "walk": 0},
+        {"thesis": 1, "walk": 1},
+        {"thesis": 2, "walk": 1},
+        {"thesis": 2, "walk": 2},
+    ]
+    assert [list(result.scenarios) for result in results] == [["thesis"], *[["thesis", "walk"]] * 3]
+    assert [result.scenarios["thesis"].cpu for result in results] == pytest.approx([0.1, 0.1, 0.2, 0.2])
+    assert [result.complete for result in results] == [False, False, False, True]
+    assert final == results[-1]
 
 
 def test_the_machine_has_a_name():
