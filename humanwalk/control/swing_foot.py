@@ -15,7 +15,7 @@ HEIGHT_SHAPE = (1.0, 0.6, 0.27)
 """Height of the ankle at the three quarters within the swing, as a share of its apex: people's foot rises with the
 heel that leaves and is low again by the middle of the swing."""
 
-PITCH_BLEND = (0.0, -0.1, 0.41, 0.87, 1.0)
+PITCH_BLEND = (0.0, -0.1, 0.36, 0.87, 1.0)
 """Share of the pitch's way at the quarters of the swing: toes still point down while the knee bends (people's whole
 foot: 0.1, 0.5, 0.9)."""
 
