@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -65,7 +66,7 @@ class CommandProfile:
     """The command as a function of time, piecewise linear."""
 
     def __init__(self, parameters: CommandParameters) -> None:
-        self._knots = []
+        self._pieces = []
         for quantity_, rate in (
             ("forward", parameters.acceleration),
             ("sideways", parameters.acceleration),
@@ -80,8 +81,17 @@ class CommandProfile:
                 target = getattr(point, quantity_)
                 times += [point.time, point.time + abs(target - value) / rate]
                 values += [value, target]
-            self._knots.append((np.array(times), np.array(values)))
+            changes = zip(pairwise(times), pairwise(values), strict=True)
+            slopes = [(to - from_) / (end - begin) if end > begin else 0.0 for (begin, end), (from_, to) in changes]
+            self._pieces.append((times, values, [*slopes, 0.0]))
 
     def at(self, time: float) -> Command:
         """The command at a time [s]."""
-        return Command(*(float(np.interp(time, times, values)) for times, values in self._knots))
+        return Command(*(_on(pieces, time) for pieces in self._pieces))
+
+
+def _on(pieces: tuple[list[float], list[float], list[float]], time: float) -> float:
+    """A broken line at a time: its knots' times, their values, the slopes after them."""
+    times, values, slopes = pieces
+    i = bisect_right(times, max(time, 0.0)) - 1
+    return values[i] + slopes[i] * (time - times[i])

@@ -216,11 +216,18 @@ class StepPlanner:
             return self._touch_down(state, body, command, moving)
         return state
 
+    def listens(self, state: PlannerState) -> bool:
+        """Whether a touch of the ground would end the step: at other times the update does not look at the forces."""
+        return state.phase is Phase.SINGLE_SUPPORT and self._progress(state) > self.parameters.timing.early_touchdown
+
     def _has_landed(self, state: PlannerState, body: BodyState) -> bool:
+        touches = body.foot(other(state.stance)).force > self.parameters.timing.touchdown_force
+        return self._progress(state) >= 1.0 or (touches and self.listens(state))
+
+    def _progress(self, state: PlannerState) -> float:
+        """Share of the swing that is over."""
         timing = self.parameters.timing
-        progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
-        touches = body.foot(other(state.stance)).force > timing.touchdown_force
-        return progress >= 1.0 or (progress > timing.early_touchdown and touches)
+        return (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
 
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         timing = self.parameters.timing
@@ -420,7 +427,7 @@ class StepPlanner:
                 pace = self._pace(state, state.ankle(other(state.stance)), command)
                 return rockers.over_ball(since, timing.double_support, load, state.old_heading, pace)
             return FootReference(FootTask.FLAT, load, state.old_heading)
-        progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
+        progress = self._progress(state)
         profile = swing.profile.at(progress)
         relaxed, slope = blend(progress / TOES_RELAXED)
         slope *= rate / (TOES_RELAXED * (timing.step - timing.double_support))

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache
 from typing import NamedTuple
 
 import daqp
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dpotrf, dtrtri
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
-from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics, FrameMotion
 from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
@@ -137,53 +137,87 @@ class WholeBodyParameters:
 
 
 class QuadraticProgram(NamedTuple):
-    """min x'Hx/2 + g'x subject to lower <= (x, A x) <= upper; where both are equal it is an equation."""
+    """min a'Ha/2 + g'a + c f'f/2 subject to lower <= (a, f, A a + B f) <= upper; where both are equal it is an equation.
+
+    H: (m, m). g: (m,). c: positive. A: (rows, m). B: (rows, k). lower, upper: (m + k + rows,).
+    """
 
     H: Array
     g: Array
+    c: float
     A: Array
+    B: Array
     lower: Array
     upper: Array
 
-    def solution(self) -> Array | None:
-        """The least x, or None where the solver finds none.
+    def solution(self) -> tuple[Array, Array] | None:
+        """The least a and f, or None where the solver finds none.
 
         The same program has the same solution to the last bit.
         """
-        # DAQP passes over a constraint that is not a number.
-        if not all(np.isfinite(part).all() for part in self):
+        # With H = U'U the cost of (y, z) = (U a, sqrt(c) f) is y'y/2 + z'z/2 and linear terms: DAQP, in plain loops, would
+        # take longer for the inverse of a full H than for all the rest.
+        U, undefined = dpotrf(self.H.T, clean=1)
+        if undefined:
             return None
-        kind = np.where(self.lower == self.upper, EQUATION, 0).astype(np.int32)
-        x, _, flag, _ = daqp.solve(self.H, self.g, self.A, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS)
-        return x if flag > 0 else None
+        to_a, _ = dtrtri(U, overwrite_c=1)
+        to_f = 1.0 / math.sqrt(self.c)
+        (rows, m), k = self.A.shape, self.B.shape[1]
+        cost = np.zeros(k + m)
+        cost[k:] = self.g @ to_a
+        # DAQP's simple bounds are those of its first variables; so z comes first, and a is among the rows.
+        constraints = np.empty((m + rows, k + m))
+        constraints[:m, :k] = 0.0
+        constraints[:m, k:] = to_a
+        np.multiply(self.B, to_f, out=constraints[m:, :k])
+        np.matmul(self.A, to_a, out=constraints[m:, k:])
+        bounds = np.empty((2, k + m + rows))
+        for bound, side in zip(bounds, (self.lower, self.upper), strict=True):
+            np.divide(side[m : m + k], to_f, out=bound[:k])
+            bound[k : k + m] = side[:m]
+            bound[k + m :] = side[m + k :]
+        # DAQP passes over a constraint that is not a number.
+        if not math.isfinite(cost.sum() + constraints.sum() + bounds.sum()):
+            return None
+        lower, upper = bounds
+        kind = np.zeros(lower.size, dtype=np.int32)
+        kind[lower == upper] = EQUATION
+        x, _, flag, _ = daqp.solve(_identity(k + m), cost, constraints, upper, lower, kind, iter_limit=MOST_ITERATIONS)
+        return (to_a @ x[k:], to_f * x[:k]) if flag > 0 else None
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
 
 
 @dataclass(frozen=True)
-class SolePoints:
-    """The contact points under one body of a foot.
+class Soles:
+    """The contact points under the bodies of both feet, k of them.
 
-    points: in the body's frame (k, 3) [m]. places: of these points among all that a solution's forces are given for.
+    body: place of each point's body among the frames of `Dynamics`, (k,). point: in that body's frame, (k, 3, 1) [m].
+    is_right, is_heel: whether it is under the right foot, under a hind-foot, (k,).
     """
 
-    side: Side
-    body: str
-    points: Array
-    places: Indices
+    body: Indices
+    point: Array
+    is_right: npt.NDArray[np.bool_]
+    is_heel: npt.NDArray[np.bool_]
 
-    @property
-    def is_heel(self) -> bool:
-        """Whether this is the hind-foot."""
-        return self.body.endswith("Ankle")
+    @staticmethod
+    def of(spheres: Sequence[ContactSphere], bodies: Sequence[str]) -> Soles:
+        """The lowest points of the spheres, in their order, when the feet stand flat."""
+        return Soles(
+            np.array([bodies.index(sphere.body) for sphere in spheres]),
+            np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])[:, :, None],
+            np.array([sphere.body.startswith("Right") for sphere in spheres]),
+            np.array([sphere.body.endswith("Ankle") for sphere in spheres]),
+        )
 
-
-def _soles(spheres: Sequence[ContactSphere]) -> tuple[SolePoints, ...]:
-    lowest = np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])
-    soles = []
-    for side in SIDES:
-        for body in FOOT_BODIES[side]:
-            places = np.array([i for i, sphere in enumerate(spheres) if sphere.body == body])
-            soles.append(SolePoints(side, body, lowest[places], places))
-    return tuple(soles)
+    def heel(self, side: Side) -> Array:
+        """The middle of the points under a foot's hind-foot, in its frame (3,) [m]."""
+        middle: Array = self.point[self.is_heel & (self.is_right == (side == "Right")), :, 0].mean(axis=0)
+        return middle
 
 
 @dataclass(frozen=True)
@@ -212,7 +246,7 @@ class WholeBodyQp:
     """Builds and solves the program; keeps nothing from one call to the next.
 
     Args:
-        dynamics: of the body.
+        dynamics: of the body. Its prescribed joints (arms, neck and head) come last.
         spheres: contact points of the soles.
         parameters: tasks and limits.
     """
@@ -229,17 +263,20 @@ class WholeBodyQp:
         self.limits = joints.effort_limits[order]
         gains = [self._posture_gains(name) for name in self.names]
         self._posture = tuple(np.array([getattr(g, f, 0.0) for g in gains]) for f in ("stiffness", "damping", "weight"))
-        is_arm = np.array([g is parameters.arms for g in gains])
-        self._prescribed = np.flatnonzero(is_arm) + 6
-        self._free = np.concatenate((np.arange(6), np.flatnonzero(~is_arm) + 6))
-        self._free_joints = np.flatnonzero(~is_arm)
+        is_free = [g is not parameters.arms for g in gains]
+        self._free = 6 + sum(is_free)
+        """Number of velocities whose accelerations are unknown: the first ones."""
+        assert all(is_free[: self._free - 6]), "the model file has a prescribed joint before a free one"
         for i, name in enumerate(self.names):
             if "LegTibia" in name:
                 self.lower[i] += parameters.knee_margin
-        self._soles = _soles(spheres)
-        self._heel = {sole.side: sole.points.mean(axis=0) for sole in self._soles if sole.is_heel}
+        self._soles = Soles.of(spheres, dynamics.bodies)
+        self._heel = {side: self._soles.heel(side) for side in SIDES}
         mu = parameters.friction
         self._edges = Directions.of(np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float))
+        free_joints = self._free - 6
+        self._diagonal = parameters.effort + np.concatenate((np.zeros(6), self._posture[2][:free_joints]))
+        self._torque_limits = np.concatenate((np.zeros(6), self.limits[:free_joints]))
 
     def _posture_gains(self, name: str) -> TaskGains | PrescribedGains:
         p = self.parameters
@@ -251,175 +288,173 @@ class WholeBodyQp:
             return p.spine
         return p.arms
 
-    @staticmethod
-    def frames(reference: WalkingReference) -> list[str]:
-        """The bodies whose frames a program for this reference needs."""
-        names = ["Pelvis", "Ribs"]
-        for side in SIDES:
-            in_the_air = reference.foot(side).task is FootTask.SWING
-            names += [f"{side}Leg_Ankle"] if in_the_air else FOOT_BODIES[side]
-        return names
-
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
-        program, qdd0, B, points = self.program(body, reference, posture)
-        x = program.solution()
-        if x is None:
+        program, qdd, points = self.program(body, reference, posture)
+        solution = program.solution()
+        if solution is None:
             return None
-        m = self._free.size
-        qdd = qdd0.copy()
-        qdd[self._free] = x[:m]
-        edge_forces = np.maximum(x[m:], 0.0)
-        torque = (body.M @ qdd + body.h - B.T @ edge_forces)[6:]
-        forces = np.zeros((sum(len(sole.places) for sole in self._soles), 3))
+        m = self._free
+        qdd[:m], edge_forces = solution[0], np.maximum(solution[1], 0.0)
+        torque = body.M @ qdd + body.h
+        # Program B is -J' of the edges; the prescribed joints carry no foot.
+        torque[:m] += program.B @ edge_forces
+        forces = np.zeros((self._soles.body.size, 3))
         forces[points] = edge_forces.reshape(-1, 4) @ self._edges.d_W
-        return WholeBodySolution(qdd, forces, np.clip(torque, -self.limits, self.limits))
+        return WholeBodySolution(qdd, forces, np.minimum(np.maximum(torque[6:], -self.limits), self.limits))
 
     def program(
         self, body: Dynamics, reference: WalkingReference, posture: Posture
-    ) -> tuple[QuadraticProgram, Array, Array, Indices]:
-        """The program, and what makes torques of its solution.
+    ) -> tuple[QuadraticProgram, Array, Indices]:
+        """The program, whose unknowns are the accelerations of base, legs and back and the forces along the edges.
 
         Returns:
-            the program; the prescribed accelerations (nv,); the Jacobian along the edges of the contact forces
-            (edges, nv); the places of the points that these edges belong to.
+            the program; the accelerations of all velocities, of which only those prescribed are not 0 (nv,); the places
+            of the points that may press, four edges each.
         """
-        p = self.parameters
+        p, m = self.parameters, self._free
         q, v = body.q[self._q], body.v[6:]
         stiffness, damping, weight = self._posture
         wanted = stiffness * (posture.angle - q) + damping * (posture.rate - v)
         qdd0 = np.zeros(body.v.size)
-        qdd0[self._prescribed] = wanted[self._prescribed - 6]
+        qdd0[m:] = wanted[m - 6 :]
 
         J, a, w = self._tasks(body, reference)
-        a = a - J @ qdd0
-        J = J[:, self._free]
-        points, B, most = self._contacts(body, reference)
-
-        m, k = self._free.size, most.size
-        free_joints = self._free_joints
+        a -= J @ qdd0
+        J = J[:, :m]
         WJ = w[:, None] * J
-        H = np.zeros((m + k, m + k))
-        H[:m, :m] = J.T @ WJ
-        diagonal = np.full(m, p.effort)
-        diagonal[6:] += weight[free_joints]
-        H[np.arange(m), np.arange(m)] += diagonal
-        H[np.arange(m, m + k), np.arange(m, m + k)] = p.force
-        g = np.zeros(m + k)
-        g[:m] = -(a @ WJ)
-        g[6:m] -= weight[free_joints] * wanted[free_joints]
+        H = J.T @ WJ
+        H.flat[:: m + 1] += self._diagonal
+        g = -(a @ WJ)
+        g[6:] -= (weight * wanted)[: m - 6]
 
-        # The equations of motion M v' + h - B' f = tau: of the base, whose tau is 0, and of the joints.
-        motion = np.empty((m, m + k))
-        motion[:, :m] = body.M[self._free[:, None], self._free]
-        motion[:, m:] = -B[:, self._free].T
-        rest = (body.h + body.M @ qdd0)[self._free]
+        # The equations of motion M v' + h - J' f = tau: of the base, whose tau is 0, and of the joints.
+        points, J_edges, most = self._contacts(body, reference)
+        k = most.size
+        rest = (body.h + body.M @ qdd0)[:m]
         lower, upper = np.full(2 * m + k, -1e4), np.full(2 * m + k, 1e4)
         slowing = p.range_damping * v
-        lower[6:m] = np.clip(p.range_stiffness * (self.lower - q) - slowing, -1e4, 1e3)[free_joints]
-        upper[6:m] = np.clip(p.range_stiffness * (self.upper - q) - slowing, -1e3, 1e4)[free_joints]
+        towards_lower = p.range_stiffness * (self.lower - q) - slowing
+        towards_upper = p.range_stiffness * (self.upper - q) - slowing
+        lower[6:m] = np.minimum(np.maximum(towards_lower, -1e4), 1e3)[: m - 6]
+        upper[6:m] = np.minimum(np.maximum(towards_upper, -1e3), 1e4)[: m - 6]
         lower[m : m + k], upper[m : m + k] = 0.0, most
-        torque_limits = np.concatenate((np.zeros(6), self.limits[free_joints]))
-        lower[m + k :], upper[m + k :] = -torque_limits - rest, torque_limits - rest
-        program = QuadraticProgram(H, g, motion, lower, upper)
-        return program, qdd0, B, points
+        lower[m + k :], upper[m + k :] = -self._torque_limits - rest, self._torque_limits - rest
+        return QuadraticProgram(H, g, p.force, body.M[:m, :m], -J_edges[:, :m].T, lower, upper), qdd0, points
 
     # Tasks: rows of J v' = a with weight w.
 
     def _tasks(self, body: Dynamics, reference: WalkingReference) -> tuple[Array, Array, Array]:
-        p = self.parameters
-        Js: list[Array] = []
-        accelerations: list[Array] = []
-        weights: list[float] = []
-
-        def add(J: Array, acceleration: Array, weight: float) -> None:
-            Js.append(J)
-            accelerations.append(acceleration)
-            weights.extend([weight] * len(J))
-
+        p, tasks = self.parameters, _Tasks()
+        x, y, z = body.com.tolist()
         height, rate, lift = reference.com_height
-        c = complex(body.com[0], body.com[1])
-        over_ground = com_acceleration(c, reference.zmp, body.com[2], lift)
-        up = (
-            lift
-            + p.com_height.stiffness * (height - body.com[2])
-            + p.com_height.damping * (rate - body.com_velocity[2])
-        )
-        add(body.com_J[:2], np.array((over_ground.real, over_ground.imag)) - body.com_bias[:2], p.com_weight)
-        add(body.com_J[2:], np.array((up,)) - body.com_bias[2:], p.com_height.weight)
+        over_ground = com_acceleration(complex(x, y), reference.zmp, z, lift)
+        gains = p.com_height
+        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - float(body.com_velocity[2]))
+        tasks.add(body.com_J[:2], body.com_bias[:2], (over_ground.real, over_ground.imag), p.com_weight)
+        tasks.add(body.com_J[2:], body.com_bias[2:], (up,), gains.weight)
         for name, yaw, gains in (("Pelvis", reference.pelvis_yaw, p.pelvis), ("Ribs", reference.chest_yaw, p.chest)):
-            frame = body.frames[name]
-            error = _rotation_error(_rotation(yaw, 0.0), frame.R_WB)
-            wanted = gains.stiffness * error - gains.damping * frame.V_WB[:3]
-            add(frame.J[:3], wanted - frame.bias[:3], gains.weight)
+            tasks.turn(body.frames[name], yaw, gains)
         for side in SIDES:
             foot = reference.foot(side)
             ankle = body.frames[f"{side}Leg_Ankle"]
             if foot.task is FootTask.SWING:
-                self._add_swing(add, foot, ankle)
+                self._swing(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_OFF:
                 toes = body.frames[f"{side}Leg_FootToes"]
-                add(toes.J, -p.stance.damping * toes.V_WB - toes.bias, p.stance.weight)
-                axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
+                tasks.add(toes.J, toes.bias, (-p.stance.damping * toes.V_WB).tolist(), p.stance.weight)
+                sine, cosine = math.sin(foot.yaw), math.cos(foot.yaw)
                 angle, rate, acceleration = foot.pitch
-                error_y = axis @ _rotation_error(_rotation(foot.yaw, angle), ankle.R_WB)
-                wanted_y = (
-                    acceleration + p.heel_off.stiffness * error_y + p.heel_off.damping * (rate - axis @ ankle.V_WB[:3])
-                )
-                add(axis[None, :] @ ankle.J[:3], np.array((wanted_y - axis @ ankle.bias[:3],)), p.heel_off.weight)
+                ex, ey, _ = _rotation_error(foot.yaw, angle, ankle.R_WB)
+                wx, wy, *_ = ankle.V_WB.tolist()
+                error, error_rate = cosine * ey - sine * ex, rate - (cosine * wy - sine * wx)
+                wanted = acceleration + p.heel_off.stiffness * error + p.heel_off.damping * error_rate
+                axis = np.array(((-sine, cosine),))
+                tasks.add(axis @ ankle.J[:2], axis @ ankle.bias[:2], (wanted,), p.heel_off.weight)
             elif foot.task is FootTask.HEEL_STRIKE:
                 heel, J, velocity, bias = ankle.point(self._heel[side])
-                add(J, p.stance.damping * (self._sinking(heel[2]) - velocity) - bias, p.stance.weight)
-                error = _rotation_error(_rotation(foot.yaw, 0.0), ankle.R_WB)
-                wanted = p.heel_strike.stiffness * error - p.heel_strike.damping * ankle.V_WB[:3]
-                add(ankle.J[:3], wanted - ankle.bias[:3], p.heel_strike.weight)
+                vx, vy, vz = velocity.tolist()
+                wanted_heel = (-vx, -vy, self._sinking(heel[2]) - vz)
+                tasks.add(J, bias, [p.stance.damping * u for u in wanted_heel], p.stance.weight)
+                tasks.turn(ankle, foot.yaw, p.heel_strike)
             else:
-                heel = ankle.p_WB + ankle.R_WB @ self._heel[side]
-                wanted = np.concatenate((np.zeros(3), self._sinking(heel[2]))) - ankle.V_WB
-                add(ankle.J, p.stance.damping * wanted - ankle.bias, p.stance.weight)
-        return np.vstack(Js), np.concatenate(accelerations), np.array(weights)
+                heel_height = float(ankle.p_WB[2] + ankle.R_WB[2] @ self._heel[side])
+                wx, wy, wz, vx, vy, vz = ankle.V_WB.tolist()
+                wanted_foot = (-wx, -wy, -wz, -vx, -vy, self._sinking(heel_height) - vz)
+                tasks.add(ankle.J, ankle.bias, [p.stance.damping * u for u in wanted_foot], p.stance.weight)
+        return tasks.rows()
 
-    def _sinking(self, height: float) -> Array:
-        """Velocity of a foot that should stand: none, or down where it has not reached the ground yet."""
-        late = height > self.parameters.contact_height
-        return np.array((0.0, 0.0, -self.parameters.sinking_speed if late else 0.0))
+    def _sinking(self, height: float) -> float:
+        """Upward speed of a foot that should stand: none, or down where it has not reached the ground yet."""
+        return -self.parameters.sinking_speed if height > self.parameters.contact_height else 0.0
 
-    def _add_swing(self, add: object, foot: FootReference, ankle: FrameMotion) -> None:
-        p = self.parameters
-        assert callable(add)
-        way, (z, dz, ddz), (pitch, dpitch, ddpitch) = foot.position, foot.height, foot.pitch
-        position = np.array((way.position.real, way.position.imag, z))
-        velocity = np.array((way.velocity.real, way.velocity.imag, dz))
-        acceleration = np.array((way.acceleration.real, way.acceleration.imag, ddz))
-        gains = p.swing_position
-        wanted = acceleration + gains.stiffness * (position - ankle.p_WB) + gains.damping * (velocity - ankle.V_WB[3:])
-        over_ground = math.hypot(wanted[0], wanted[1])
-        if over_ground > p.swing_acceleration_limit:
-            wanted[:2] *= p.swing_acceleration_limit / over_ground
-        add(ankle.J[3:], wanted - ankle.bias[3:], gains.weight)
-        axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
-        gains = p.swing_rotation
-        error = _rotation_error(_rotation(foot.yaw, pitch), ankle.R_WB)
-        wanted = ddpitch * axis + gains.stiffness * error + gains.damping * (dpitch * axis - ankle.V_WB[:3])
-        add(ankle.J[:3], wanted - ankle.bias[:3], gains.weight)
+    def _swing(self, tasks: _Tasks, foot: FootReference, ankle: FrameMotion) -> None:
+        p, gains = self.parameters, self.parameters.swing_position
+        way, (height, rate, lift) = foot.position, foot.height
+        x, y, z = ankle.p_WB.tolist()
+        vx, vy, vz = ankle.V_WB[3:].tolist()
+        over_ground = way.acceleration + gains.stiffness * (way.position - complex(x, y))
+        over_ground += gains.damping * (way.velocity - complex(vx, vy))
+        if abs(over_ground) > p.swing_acceleration_limit:
+            over_ground *= p.swing_acceleration_limit / abs(over_ground)
+        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - vz)
+        tasks.add(ankle.J[3:], ankle.bias[3:], (over_ground.real, over_ground.imag, up), gains.weight)
+        tasks.turn(ankle, foot.yaw, p.swing_rotation, *foot.pitch)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
-        """Places of the points that may press (k,), their force per edge as generalised force (4 k, nv), its bound."""
-        p = self.parameters
-        places, blocks, most = [], [], []
-        for sole in self._soles:
-            foot = reference.foot(sole.side)
-            if foot.load <= 0.0 or (foot.task is FootTask.HEEL_OFF and sole.is_heel):
-                continue
-            frame = body.frames[sole.body]
-            low = np.flatnonzero(frame.p_WB[2] + sole.points @ frame.R_WB[2] < p.contact_height)
-            if low.size:
-                places.append(sole.places[low])
-                blocks.append(frame.along(sole.points[low], self._edges))
-                most.append(np.full(4 * low.size, p.largest_force * foot.load))
-        if not places:
-            return np.zeros(0, dtype=int), np.zeros((0, body.v.size)), np.zeros(0)
-        return np.concatenate(places), np.concatenate(blocks), np.concatenate(most)
+        """Places of the points that may press (k,), velocities along their edges by v (4 k, nv), the forces' bound."""
+        p, soles = self.parameters, self._soles
+        right, left = reference.right, reference.left
+        load = np.where(soles.is_right, right.load, left.load)
+        for foot, is_its in ((right, soles.is_right), (left, ~soles.is_right)):
+            if foot.task is FootTask.HEEL_OFF:
+                load[is_its & soles.is_heel] = 0.0
+        X_WB = body.frames.X_WB[soles.body]
+        p_BoP_W = (X_WB[:, :, :3] @ soles.point)[:, :, 0]
+        is_low = X_WB[:, 2, 3] + p_BoP_W[:, 2] < p.contact_height
+        points = np.flatnonzero(is_low & (load > 0.0))
+        along = body.frames.along(soles.body[points], p_BoP_W[points], self._edges)
+        return points, along.reshape(4 * points.size, body.v.size), np.repeat(p.largest_force * load[points], 4)
+
+
+@dataclass(frozen=True)
+class _Tasks:
+    """Rows that are gathered one task after the other."""
+
+    J: list[Array] = field(default_factory=list)
+    bias: list[Array] = field(default_factory=list)
+    wanted: list[float] = field(default_factory=list)
+    weight: list[float] = field(default_factory=list)
+
+    def add(self, J: Array, bias: Array, acceleration: Sequence[float], weight: float) -> None:
+        """J v' + bias should be this acceleration."""
+        self.J.append(J)
+        self.bias.append(bias)
+        self.wanted.extend(acceleration)
+        self.weight.extend([weight] * len(acceleration))
+
+    def turn(
+        self,
+        frame: FrameMotion,
+        yaw: float,
+        gains: TaskGains,
+        pitch: float = 0.0,
+        pitch_rate: float = 0.0,
+        pitch_acceleration: float = 0.0,
+    ) -> None:
+        """A frame should be turned by a yaw that stays and a pitch that changes."""
+        axis = (-math.sin(yaw), math.cos(yaw), 0.0)
+        error, velocity = _rotation_error(yaw, pitch, frame.R_WB), frame.V_WB[:3].tolist()
+        wanted = [
+            pitch_acceleration * n + gains.stiffness * e + gains.damping * (pitch_rate * n - w)
+            for n, e, w in zip(axis, error, velocity, strict=True)
+        ]
+        self.add(frame.J[:3], frame.bias[:3], wanted, gains.weight)
+
+    def rows(self) -> tuple[Array, Array, Array]:
+        """All rows: J, what J v' should be, weight."""
+        wanted: Array = np.array(self.wanted) - np.concatenate(self.bias)
+        return np.concatenate(self.J), wanted, np.array(self.weight)
 
 
 def is_foot_posture(joint_name: str) -> bool:
@@ -427,19 +462,20 @@ def is_foot_posture(joint_name: str) -> bool:
     return any(word in joint_name for word in ("AnkleTwist", "FootMiddle", "FootToes"))
 
 
-def _rotation(yaw: float, pitch: float) -> Array:
-    """Rz(yaw) Ry(pitch)."""
-    u = cmath.exp(1j * yaw)
-    c, s, cp, sp = u.real, u.imag, math.cos(pitch), math.sin(pitch)
-    return np.array(((c * cp, -s, c * sp), (s * cp, c, s * sp), (-sp, 0.0, cp)))
+Vector = tuple[float, float, float]
 
 
-def _rotation_error(wanted: Array, actual: Array) -> Array:
-    """Rotation vector in W that turns `actual` into `wanted`; exact up to a right angle, then bounded."""
-    R = wanted @ actual.T
-    sine = 0.5 * np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
-    length = math.sqrt(sine @ sine)
-    if length < 1e-9:
-        return sine
-    error: Array = sine * (math.atan2(length, 0.5 * (R.trace() - 1.0)) / length)
-    return error
+def _rotation_error(yaw: float, pitch: float, R_WB: Array) -> Vector:
+    """Rotation vector in W that turns R_WB into Rz(yaw) Ry(pitch); exact up to a right angle, then bounded."""
+    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    wanted = ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp))
+    # The sum of the cross products of actual and wanted axes is twice sine times axis, that of the dot products the trace.
+    x = y = z = trace = 0.0
+    for (ax, ay, az), (wx, wy, wz) in zip(R_WB.T.tolist(), wanted, strict=True):
+        x += ay * wz - az * wy
+        y += az * wx - ax * wz
+        z += ax * wy - ay * wx
+        trace += ax * wx + ay * wy + az * wz
+    length = math.hypot(x, y, z)
+    scale = math.atan2(length, trace - 1.0) / length if length > 2e-9 else 0.5
+    return scale * x, scale * y, scale * z

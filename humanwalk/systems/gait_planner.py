@@ -26,6 +26,9 @@ from humanwalk.control.walking_reference import (
     other,
 )
 
+UNKNOWN: dict[Side, float] = dict.fromkeys(SIDES, 0.0)
+"""Forces of the feet that nobody asks for: to sum up the contacts costs as much as the planner itself."""
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -100,18 +103,17 @@ class GaitPlanner(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(period, 0.0, self._plan)
 
     def _start(self, context: Context, state: State) -> EventStatus:
-        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), dict.fromkeys(SIDES, 0.0))
+        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), UNKNOWN)
         return self._remember(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
-        forces = self._foot_forces.Eval(context)
-        body = self._dynamics.body_state(
-            self._state.Eval(context),
-            context.get_time(),
-            {side: float(forces[8 * place + 2]) for place, side in enumerate(SIDES)},
-        )
         remembered = context.get_abstract_state(int(self._memory)).get_value().state
         assert remembered is not None
+        forces = UNKNOWN
+        if self._planner.listens(remembered):
+            felt = self._foot_forces.Eval(context)
+            forces = {side: float(felt[8 * place + 2]) for place, side in enumerate(SIDES)}
+        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), forces)
         return self._remember(state, *self._planner.update(remembered, body, Command(*self._command.Eval(context))))
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:

@@ -62,6 +62,7 @@ class WholeBodyController(LeafSystem):
         self._n = n = len(joints.names)
         self._place = joints.v - 6
         self._order = np.argsort(self._place)
+        self._q = joints.q[self._order]
         self._index = {name: i for i, name in enumerate(self._qp.names)}
         self._rest = np.array([posture.get(name, 0.0) for name in self._qp.names])
         self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
@@ -79,10 +80,8 @@ class WholeBodyController(LeafSystem):
 
     def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context).reference
-        state = self._state.Eval(context)
-        body = self._dynamics.at(state, self._qp.frames(reference))
-        q = self._dynamics.joints.positions(state)[self._order]
-        v = body.v[6:]
+        body = self._dynamics.at(self._state.Eval(context))
+        q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         solution = self._qp.solve(body, reference, posture)
 
