@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -66,7 +65,7 @@ class CommandProfile:
     """The command as a function of time, piecewise linear."""
 
     def __init__(self, parameters: CommandParameters) -> None:
-        self._pieces = []
+        self._knots = []
         for quantity_, rate in (
             ("forward", parameters.acceleration),
             ("sideways", parameters.acceleration),
@@ -81,17 +80,16 @@ class CommandProfile:
                 target = getattr(point, quantity_)
                 times += [point.time, point.time + abs(target - value) / rate]
                 values += [value, target]
-            changes = zip(pairwise(times), pairwise(values), strict=True)
-            slopes = [(to - from_) / (end - begin) if end > begin else 0.0 for (begin, end), (from_, to) in changes]
-            self._pieces.append((times, values, [*slopes, 0.0]))
+            self._knots.append((np.array(times), np.array(values)))
+
+    @property
+    def knots(self) -> list[float]:
+        """Times between which everything that is commanded changes at constant rates; at least two [s]."""
+        times = sorted({float(time) for times, _ in self._knots for time in times})
+        # Two that differ by rounding are one.
+        apart = [time for time, before in zip(times, [-1.0, *times], strict=False) if time > before + 1e-9]
+        return [*apart, apart[-1] + 1.0]
 
     def at(self, time: float) -> Command:
         """The command at a time [s]."""
-        return Command(*(_on(pieces, time) for pieces in self._pieces))
-
-
-def _on(pieces: tuple[list[float], list[float], list[float]], time: float) -> float:
-    """A broken line at a time: its knots' times, their values, the slopes after them."""
-    times, values, slopes = pieces
-    i = bisect_right(times, max(time, 0.0)) - 1
-    return values[i] + slopes[i] * (time - times[i])
+        return Command(*(float(np.interp(time, times, values)) for times, values in self._knots))

@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body import SIDES
 from humanwalk.body.plant import kinematics_plant
@@ -30,8 +32,8 @@ TASK_GAINS = 3
 def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
-    foot_force_observer, or foot_contact with `contact: asperity`.
+    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes (a PushSource where the
+    scenario has any, or zero), body_observer, foot_force_observer, or foot_contact with `contact: asperity`.
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
@@ -79,7 +81,6 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period),
     )
     bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
-    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
     feet = add_foot_contact(builder, scenario, human)
 
@@ -97,7 +98,8 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
     if law == "implicit":
         builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
-    connect_spatial_forces(builder, human, (*feet.spatial_forces, pushes.get_spatial_forces_output_port()))
+    push, spatial_forces = _add_pushes(builder, scenario, plant)
+    connect_spatial_forces(builder, human, (*feet.spatial_forces, *spatial_forces))
 
     for port, name in (
         (plant.get_state_output_port(), "state"),
@@ -119,9 +121,23 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         (command.get_command_output_port(), "command"),
         (planner.get_balance_output_port(), "balance"),
         (controller.get_status_output_port(), "qp_status"),
-        (pushes.get_force_output_port(), "push"),
+        (push, "push"),
     ):
         builder.ExportOutput(port, name)
     diagram = builder.Build()
     diagram.set_name("walker")
     return diagram
+
+
+def _add_pushes(
+    builder: DiagramBuilder, scenario: Scenario, plant: MultibodyPlant
+) -> tuple[OutputPort, tuple[OutputPort, ...]]:
+    """Add what pushes the body; returns the ports of the pushes' force and of the forces for the plant.
+
+    Where a scenario has no pushes there is no source of any: the plant would ask it in every step.
+    """
+    if not scenario.pushes.any:
+        none = builder.AddNamedSystem("pushes", ConstantVectorSource(np.zeros(3)))
+        return none.get_output_port(), ()
+    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
+    return pushes.get_force_output_port(), (pushes.get_spatial_forces_output_port(),)
