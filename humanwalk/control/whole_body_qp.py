@@ -111,7 +111,7 @@ class WholeBodyParameters:
     effort: float = quantity(1e-4, "", 0.0, 1.0)
     """Cost per squared joint acceleration."""
 
-    force: float = quantity(1e-6, "1/N2", 0.0, 1.0)
+    force: float = quantity(1e-6, "1/N2", 1e-12, 1.0)
     """Cost per squared contact force."""
 
     friction: float = quantity(0.55, "", 0.1, 1.0)
@@ -137,14 +137,13 @@ class WholeBodyParameters:
 
 
 class QuadraticProgram(NamedTuple):
-    """min a'Ha/2 + g'a + c f'f/2 subject to lower <= (a, f, A a + B f) <= upper; where both are equal it is an equation.
+    """min a'Ha/2 + g'a + f'f/2 subject to lower <= (f, a, A a + B f) <= upper; where both are equal it is an equation.
 
-    H: (m, m). g: (m,). c: positive. A: (rows, m). B: (rows, k). lower, upper: (m + k + rows,).
+    H: (m, m). g: (m,). A: (rows, m). B: (rows, k). lower, upper: (k + m + rows,).
     """
 
     H: Array
     g: Array
-    c: float
     A: Array
     B: Array
     lower: Array
@@ -155,35 +154,25 @@ class QuadraticProgram(NamedTuple):
 
         The same program has the same solution to the last bit.
         """
-        # With H = U'U the cost of (y, z) = (U a, sqrt(c) f) is y'y/2 + z'z/2 and linear terms: DAQP, in plain loops, would
-        # take longer for the inverse of a full H than for all the rest.
+        # DAQP inverts H in plain loops, which would take longer than all the rest. With H = U'U and y = U a the cost is
+        # y'y/2 and linear terms; the bounds of a become rows, those of f stay simple ones, of the first variables.
         U, undefined = dpotrf(self.H.T, clean=1)
         if undefined:
             return None
         to_a, _ = dtrtri(U, overwrite_c=1)
-        to_f = 1.0 / math.sqrt(self.c)
         (rows, m), k = self.A.shape, self.B.shape[1]
-        cost = np.zeros(k + m)
-        cost[k:] = self.g @ to_a
-        # DAQP's simple bounds are those of its first variables; so z comes first, and a is among the rows.
-        constraints = np.empty((m + rows, k + m))
-        constraints[:m, :k] = 0.0
+        constraints, cost = np.zeros((m + rows, k + m)), np.zeros(k + m)
         constraints[:m, k:] = to_a
-        np.multiply(self.B, to_f, out=constraints[m:, :k])
+        constraints[m:, :k] = self.B
         np.matmul(self.A, to_a, out=constraints[m:, k:])
-        bounds = np.empty((2, k + m + rows))
-        for bound, side in zip(bounds, (self.lower, self.upper), strict=True):
-            np.divide(side[m : m + k], to_f, out=bound[:k])
-            bound[k : k + m] = side[:m]
-            bound[k + m :] = side[m + k :]
+        np.matmul(self.g, to_a, out=cost[k:])
         # DAQP passes over a constraint that is not a number.
-        if not math.isfinite(cost.sum() + constraints.sum() + bounds.sum()):
+        if not math.isfinite(np.vdot(constraints, constraints) + cost @ cost + self.lower @ self.upper):
             return None
-        lower, upper = bounds
-        kind = np.zeros(lower.size, dtype=np.int32)
-        kind[lower == upper] = EQUATION
-        x, _, flag, _ = daqp.solve(_identity(k + m), cost, constraints, upper, lower, kind, iter_limit=MOST_ITERATIONS)
-        return (to_a @ x[k:], to_f * x[:k]) if flag > 0 else None
+        kind = np.multiply(self.lower == self.upper, EQUATION, dtype=np.int32)
+        identity = _identity(k + m)
+        x, _, flag, _ = daqp.solve(identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS)
+        return (to_a @ x[k:], x[:k]) if flag > 0 else None
 
 
 @cache
@@ -272,8 +261,10 @@ class WholeBodyQp:
                 self.lower[i] += parameters.knee_margin
         self._soles = Soles.of(spheres, dynamics.bodies)
         self._heel = {side: self._soles.heel(side) for side in SIDES}
-        mu = parameters.friction
-        self._edges = Directions.of(np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float))
+        mu, self._unit = parameters.friction, parameters.force**-0.5
+        """Forces are counted in the unit whose square costs 1/2 [N]."""
+        edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
+        self._edges = Directions.of(self._unit * edges)
         free_joints = self._free - 6
         self._diagonal = parameters.effort + np.concatenate((np.zeros(6), self._posture[2][:free_joints]))
         self._torque_limits = np.concatenate((np.zeros(6), self.limits[:free_joints]))
@@ -332,15 +323,15 @@ class WholeBodyQp:
         points, J_edges, most = self._contacts(body, reference)
         k = most.size
         rest = (body.h + body.M @ qdd0)[:m]
-        lower, upper = np.full(2 * m + k, -1e4), np.full(2 * m + k, 1e4)
+        lower, upper = np.full(k + 2 * m, -1e4), np.full(k + 2 * m, 1e4)
+        lower[:k], upper[:k] = 0.0, most
         slowing = p.range_damping * v
         towards_lower = p.range_stiffness * (self.lower - q) - slowing
         towards_upper = p.range_stiffness * (self.upper - q) - slowing
-        lower[6:m] = np.minimum(np.maximum(towards_lower, -1e4), 1e3)[: m - 6]
-        upper[6:m] = np.minimum(np.maximum(towards_upper, -1e3), 1e4)[: m - 6]
-        lower[m : m + k], upper[m : m + k] = 0.0, most
-        lower[m + k :], upper[m + k :] = -self._torque_limits - rest, self._torque_limits - rest
-        return QuadraticProgram(H, g, p.force, body.M[:m, :m], -J_edges[:, :m].T, lower, upper), qdd0, points
+        lower[k + 6 : k + m] = np.minimum(np.maximum(towards_lower, -1e4), 1e3)[: m - 6]
+        upper[k + 6 : k + m] = np.minimum(np.maximum(towards_upper, -1e3), 1e4)[: m - 6]
+        lower[k + m :], upper[k + m :] = -self._torque_limits - rest, self._torque_limits - rest
+        return QuadraticProgram(H, g, body.M[:m, :m], -J_edges[:, :m].T, lower, upper), qdd0, points
 
     # Tasks: rows of J v' = a with weight w.
 
@@ -402,7 +393,7 @@ class WholeBodyQp:
         tasks.turn(ankle, foot.yaw, p.swing_rotation, *foot.pitch)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
-        """Places of the points that may press (k,), velocities along their edges by v (4 k, nv), the forces' bound."""
+        """Places of the points that may press (k,), Jacobian of their edges (4 k, nv), the bound of the edges' forces."""
         p, soles = self.parameters, self._soles
         right, left = reference.right, reference.left
         load = np.where(soles.is_right, right.load, left.load)
@@ -414,7 +405,7 @@ class WholeBodyQp:
         is_low = X_WB[:, 2, 3] + p_BoP_W[:, 2] < p.contact_height
         points = np.flatnonzero(is_low & (load > 0.0))
         along = body.frames.along(soles.body[points], p_BoP_W[points], self._edges)
-        return points, along.reshape(4 * points.size, body.v.size), np.repeat(p.largest_force * load[points], 4)
+        return points, along.reshape(4 * points.size, body.v.size), np.repeat(p.largest_force / self._unit * load[points], 4)
 
 
 @dataclass(frozen=True)

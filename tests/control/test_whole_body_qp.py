@@ -154,17 +154,17 @@ def test_a_programs_solution_is_feasible_and_no_way_along_the_constraints_is_bet
     lower = np.concatenate((inside, A @ inside)) - random.uniform(0.0, 1.0, 10)
     upper = np.concatenate((inside, A @ inside)) + random.uniform(0.0, 1.0, 10)
     lower[6] = upper[6] = A[0] @ inside
-    H, c = root @ root.T + 0.1 * np.eye(4), random.uniform(0.1, 2.0)
-    program = QuadraticProgram(H, random.normal(size=4), c, A[:, :4], A[:, 4:], lower, upper)
+    H = root @ root.T + 0.1 * np.eye(4)
+    program = QuadraticProgram(H, random.normal(size=4), A[:, 2:], A[:, :2], lower, upper)
     solution = program.solution()
     assert solution is not None
     a, f = solution
-    x = np.concatenate((a, f))
+    x = np.concatenate((f, a))
     values = np.concatenate((x, A @ x))
     assert (values >= lower - 1e-5).all()
     assert (values <= upper + 1e-5).all()
     # What is convex is least where no feasible point lies downhill; all of them lie towards some point inside.
-    slope = np.concatenate((H @ a + program.g, c * f))
+    slope = np.concatenate((f, H @ a + program.g))
     others = inside + random.normal(size=(200, 6)) * 0.1
     others -= np.outer((others - inside) @ A[0], A[0]) / (A[0] @ A[0])
     reached = np.hstack((others, others @ A.T))
@@ -172,8 +172,8 @@ def test_a_programs_solution_is_feasible_and_no_way_along_the_constraints_is_bet
     assert ((np.vstack((inside, feasible)) - x) @ slope >= -1e-4).all()
 
 
-@pytest.mark.parametrize("field", ["H", "g", "c", "A", "B", "lower", "upper"])
+@pytest.mark.parametrize("field", ["H", "g", "A", "B", "lower", "upper"])
 def test_a_program_with_nan_has_no_solution(field):
-    program = QuadraticProgram(np.eye(3), np.ones(3), 1.0, np.ones((1, 3)), np.ones((1, 2)), -np.ones(6), np.ones(6))
+    program = QuadraticProgram(np.eye(3), np.ones(3), np.ones((1, 3)), np.ones((1, 2)), -np.ones(6), np.ones(6))
     assert program.solution() is not None
     assert program._replace(**{field: np.nan * getattr(program, field)}).solution() is None
