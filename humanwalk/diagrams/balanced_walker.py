@@ -17,6 +17,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
+from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
@@ -32,8 +33,9 @@ TASK_GAINS = 3
 def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes (a PushSource where the
-    scenario has any, or zero), body_observer, foot_force_observer, or foot_contact with `contact: asperity`.
+    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, held_actuation (with the
+    semi-implicit law), pushes (a PushSource where the scenario has any, or zero), body_observer,
+    foot_force_observer, or foot_contact with `contact: asperity`.
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
@@ -95,8 +97,18 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(controller.get_sample_time_output_port(), bank.get_sample_time_input_port())
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
-    if law == "implicit":
+    if law == "semi_implicit":
+        # The bank's own law, without Python; the bank is asked for what it tells of it.
+        held = builder.AddNamedSystem(
+            "held_actuation", HeldActuation(human.joints, human.kp, human.kd, human.effort_limits)
+        )
+        builder.Connect(controller.get_torque_output_port(), held.get_feedforward_input_port())
+        builder.Connect(controller.get_desired_state_output_port(), held.get_desired_state_input_port())
+        builder.Connect(controller.get_sample_time_output_port(), held.get_sample_time_input_port())
+        builder.Connect(plant.get_state_output_port(), held.get_state_input_port())
+        builder.Connect(held.get_actuation_output_port(), plant.get_actuation_input_port())
+    else:
+        builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
         builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
     push, spatial_forces = _add_pushes(builder, scenario, plant)
     connect_spatial_forces(builder, human, (*feet.spatial_forces, *spatial_forces))
