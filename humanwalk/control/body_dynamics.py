@@ -52,53 +52,24 @@ class FrameMotion(NamedTuple):
 
     def point(self, p_BoP_B: Array) -> tuple[Array, Array, Array, Array]:
         """A point P fixed to B: position (3,), Jacobian (3, nv), velocity (3,), bias of the acceleration (3,)."""
-        r = self.R_WB @ p_BoP_B
+        r = self.R_WB.dot(p_BoP_B)
         w = _cross_matrix(self.V_WB[:3])
         # What an angular and a translational vector of B are at P: v + w x r.
         to_P = np.hstack((-_cross_matrix(r), np.eye(3)))
-        return self.p_WB + r, to_P @ self.J, to_P @ self.V_WB, to_P @ self.bias + w @ (w @ r)
-
-
-@dataclass(frozen=True)
-class Frames:
-    """Several body frames, told as in `FrameMotion`, one beside the other.
-
-    names: of the bodies. X_WB: (n, 3, 4), rotation matrix and position [m]. J: (n, 6, nv). V_WB, bias: (n, 6).
-    """
-
-    names: tuple[str, ...]
-    X_WB: Array
-    J: Array
-    V_WB: Array
-    bias: Array
-
-    def __getitem__(self, name: str) -> FrameMotion:
-        i = self.names.index(name)
-        X_WB = self.X_WB[i]
-        return FrameMotion(X_WB[:, :3], X_WB[:, 3], self.J[i], self.V_WB[i], self.bias[i])
-
-    def along(self, which: Indices, p_BoP_W: Array, directions: Directions) -> Array:
-        """Jacobian of the velocities of points along directions; shape (k, directions, nv).
-
-        Args:
-            which: place of each point's body, (k,).
-            p_BoP_W: from the body's origin to the point, in W, shape (k, 3) [m].
-            directions: the same at every point.
-        """
-        # Of every point and direction the moment and the direction, which a product takes to the joints.
-        wrenches = np.empty((len(which), len(directions.d_W), 6))
-        wrenches[..., :3] = (p_BoP_W @ directions.moments).reshape(len(which), len(directions.d_W), 3)
-        wrenches[..., 3:] = directions.d_W
-        return wrenches @ self.J[which]
+        return self.p_WB + r, to_P.dot(self.J), to_P.dot(self.V_WB), to_P.dot(self.bias) + w.dot(w.dot(r))
 
 
 @dataclass(frozen=True)
 class Dynamics:
     """The body at one state; M v' + h = tau + J' f, with gravity and damping in h.
 
+    The motions of some bodies' frames and of the centre of mass are told in rows, all in W: of each body its angular and
+    its translational velocity, in the order of `bodies`, then the velocity of the centre of mass.
+
     q, v: positions and velocities. M: (nv, nv). h: (nv,) [N m, N].
-    com, com_velocity: of the centre of mass in W, (3,) [m, m/s]; its acceleration is com_J v' + com_bias.
-    frames: of pelvis, ribs and the bodies of the feet.
+    com: centre of mass (3,) [m].
+    bodies: names of pelvis, ribs and the bodies of the feet. X_WB: rotation matrix and position of each, (n, 3, 4) [m].
+    velocity: (6 n + 3,) = J v [rad/s, m/s]; its derivative is J v' + bias. J: (6 n + 3, nv). bias: (6 n + 3,).
     """
 
     q: Array
@@ -106,10 +77,44 @@ class Dynamics:
     M: Array
     h: Array
     com: Array
-    com_velocity: Array
-    com_J: Array
-    com_bias: Array
-    frames: Frames
+    bodies: tuple[str, ...]
+    X_WB: Array
+    velocity: Array
+    J: Array
+    bias: Array
+
+    def frame(self, body: str) -> FrameMotion:
+        """One body's frame."""
+        i = self.bodies.index(body)
+        X_WB, rows = self.X_WB[i], slice(6 * i, 6 * i + 6)
+        return FrameMotion(X_WB[:, :3], X_WB[:, 3], self.J[rows], self.velocity[rows], self.bias[rows])
+
+    @property
+    def com_J(self) -> Array:
+        """Jacobian of the centre of mass (3, nv)."""
+        return self.J[-3:]
+
+    @property
+    def com_bias(self) -> Array:
+        """Acceleration of the centre of mass where v' = 0, (3,) [m/s2]."""
+        return self.bias[-3:]
+
+    def along(self, which: Indices, p_BoP_W: Array, directions: Directions) -> Array:
+        """Jacobian of the velocities of points along directions; shape (points x directions, nv).
+
+        Args:
+            which: place of each point's body, (k,).
+            p_BoP_W: from the body's origin to the point, in W, shape (k, 3) [m].
+            directions: the same at every point.
+        """
+        k, d = len(which), len(directions.d_W)
+        # Of every point and direction the moment and the direction, which a product takes to the joints.
+        wrenches = np.empty((k, d, 6))
+        wrenches[..., :3] = p_BoP_W.dot(directions.moments).reshape(k, d, 3)
+        wrenches[..., 3:] = directions.d_W
+        J = self.J[:-3].reshape(len(self.bodies), 6, -1)
+        along: Array = np.matmul(wrenches, J.take(which, axis=0)).reshape(k * d, self.v.size)
+        return along
 
 
 class BodyDynamics:
@@ -139,36 +144,25 @@ class BodyDynamics:
 
     def at(self, state: Array) -> Dynamics:
         """The body at a plant state [q; v]."""
-        plant, context = self.plant, self._context
+        plant, context, world = self.plant, self._context, self._world
         plant.SetPositionsAndVelocities(context, state)
         q, v = state[: plant.num_positions()], state[plant.num_positions() :]
-        frames = self._frames_at(v)
+        n = len(self._frames)
+        X_WB, J, bias = np.empty((n, 3, 4)), np.empty((6 * n + 3, v.size)), np.empty(6 * n + 3)
+        accelerations = plant.CalcSpatialAccelerationsFromVdot(context, self._no_acceleration)
+        for i, (frame, body) in enumerate(self._frames):
+            rows = slice(6 * i, 6 * i + 6)
+            X_WB[i] = frame.CalcPoseInWorld(context).GetAsMatrix34()
+            J[rows] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
+            bias[rows] = accelerations[body].get_coeffs()
         M = plant.CalcMassMatrix(context)
         # To a body that is accelerated upward at rest, inertia is what gravity is to one that is not.
         h = plant.CalcInverseDynamics(context, self._upward, self._no_forces)
         # Translational rows of a floating base: momentum and its rate (the pelvis' velocities are given in W).
-        com_J = M[3:6] / self.mass
-        return Dynamics(
-            q=q,
-            v=v,
-            M=M,
-            h=h + self._damping * v,
-            com=plant.CalcCenterOfMassPositionInWorld(context),
-            com_velocity=com_J @ v,
-            com_J=com_J,
-            com_bias=h[3:6] / self.mass - self._upward[3:6],
-            frames=frames,
-        )
-
-    def _frames_at(self, v: Array) -> Frames:
-        plant, context, world, n = self.plant, self._context, self._world, len(self._frames)
-        X_WB, J, bias = np.empty((n, 3, 4)), np.empty((n, 6, v.size)), np.empty((n, 6))
-        accelerations = plant.CalcSpatialAccelerationsFromVdot(context, self._no_acceleration)
-        for i, (frame, body) in enumerate(self._frames):
-            X_WB[i] = frame.CalcPoseInWorld(context).GetAsMatrix34()
-            J[i] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
-            bias[i] = accelerations[body].get_coeffs()
-        return Frames(self.bodies, X_WB, J, (J.reshape(-1, v.size) @ v).reshape(n, 6), bias)
+        np.divide(M[3:6], self.mass, out=J[-3:])
+        bias[-3:] = h[3:6] / self.mass - self._upward[3:6]
+        com = plant.CalcCenterOfMassPositionInWorld(context)
+        return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J.dot(v), J, bias)
 
     def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float]) -> BodyState:
         """What the step planner wants to know, from a plant state [q; v] and the feet's vertical forces [N]."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
+from itertools import product
 from typing import NamedTuple
 
 import daqp
@@ -15,13 +16,17 @@ from scipy.linalg.lapack import dpotrf, dtrtri
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
-from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics, FrameMotion
+from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics
 from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
 
+FREE = np.array(((-1e4,), (1e4,)))
+"""Bounds of an acceleration that has none [rad/s2, m/s2]."""
+LEAST, MOST = np.array(((-1e4,), (-1e3,))), np.array(((1e3,), (1e4,)))
+"""Least and greatest values of an acceleration's lower and upper bound at the ends of a joint's range [rad/s2]."""
 EQUATION = 5
 """DAQP's word for a constraint that is an equation."""
 MOST_ITERATIONS = 500
@@ -180,18 +185,21 @@ def _identity(size: int) -> Array:
     return np.eye(size)
 
 
+SOLES: tuple[tuple[Side, bool], ...] = tuple(product(SIDES, (True, False)))
+"""The parts of the feet that may press or not as one: of each foot the hind-foot (True), and the rest."""
+
+
 @dataclass(frozen=True)
 class Soles:
     """The contact points under the bodies of both feet, k of them.
 
-    body: place of each point's body among the frames of `Dynamics`, (k,). point: in that body's frame, (k, 3, 1) [m].
-    is_right, is_heel: whether it is under the right foot, under a hind-foot, (k,).
+    body: place of each point's body among those of `Dynamics`, (k,). point: in that body's frame, (k, 3, 1) [m].
+    sole: place of the part of a foot that it is under in `SOLES`, (k,).
     """
 
     body: Indices
     point: Array
-    is_right: npt.NDArray[np.bool_]
-    is_heel: npt.NDArray[np.bool_]
+    sole: Indices
 
     @staticmethod
     def of(spheres: Sequence[ContactSphere], bodies: Sequence[str]) -> Soles:
@@ -199,14 +207,18 @@ class Soles:
         return Soles(
             np.array([bodies.index(sphere.body) for sphere in spheres]),
             np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])[:, :, None],
-            np.array([sphere.body.startswith("Right") for sphere in spheres]),
-            np.array([sphere.body.endswith("Ankle") for sphere in spheres]),
+            np.array([SOLES.index((side_of(sphere.body), sphere.body.endswith("Ankle"))) for sphere in spheres]),
         )
 
     def heel(self, side: Side) -> Array:
         """The middle of the points under a foot's hind-foot, in its frame (3,) [m]."""
-        middle: Array = self.point[self.is_heel & (self.is_right == (side == "Right")), :, 0].mean(axis=0)
+        middle: Array = self.point[self.sole == SOLES.index((side, True)), :, 0].mean(axis=0)
         return middle
+
+
+def side_of(body: str) -> Side:
+    """The side that a leg's body is of."""
+    return "Right" if body.startswith("Right") else "Left"
 
 
 @dataclass(frozen=True)
@@ -248,26 +260,26 @@ class WholeBodyQp:
         order = np.argsort(joints.v)
         self.names = tuple(joints.names[i] for i in order)
         self._q = joints.q[order]
-        self.lower, self.upper = joints.lower[order].copy(), joints.upper[order].copy()
         self.limits = joints.effort_limits[order]
         gains = [self._posture_gains(name) for name in self.names]
-        self._posture = tuple(np.array([getattr(g, f, 0.0) for g in gains]) for f in ("stiffness", "damping", "weight"))
-        is_free = [g is not parameters.arms for g in gains]
-        self._free = 6 + sum(is_free)
+        self._stiffness, self._damping = np.array([(g.stiffness, g.damping) for g in gains]).T.copy()
+        tasks = [g for g in gains if isinstance(g, TaskGains)]
+        self._free = m = 6 + len(tasks)
         """Number of velocities whose accelerations are unknown: the first ones."""
-        assert all(is_free[: self._free - 6]), "the model file has a prescribed joint before a free one"
-        for i, name in enumerate(self.names):
-            if "LegTibia" in name:
-                self.lower[i] += parameters.knee_margin
+        assert gains[: m - 6] == tasks, "the model file has a prescribed joint before a free one"
+        self._weight = np.array([g.weight for g in tasks])
+        self._diagonal = parameters.effort + np.concatenate((np.zeros(6), self._weight))
+        margin = np.array([parameters.knee_margin * ("LegTibia" in name) for name in self.names])
+        self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
+        torque_limits = np.concatenate((np.zeros(6), self.limits[: m - 6]))
+        self._torque_range = np.array((-torque_limits, torque_limits))
+        self._place = {name: i for i, name in enumerate(dynamics.bodies)}
         self._soles = Soles.of(spheres, dynamics.bodies)
-        self._heel = {side: self._soles.heel(side) for side in SIDES}
+        self._heel = {side: self._soles.heel(side).tolist() for side in SIDES}
         mu, self._unit = parameters.friction, parameters.force**-0.5
         """Forces are counted in the unit whose square costs 1/2 [N]."""
         edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
         self._edges = Directions.of(self._unit * edges)
-        free_joints = self._free - 6
-        self._diagonal = parameters.effort + np.concatenate((np.zeros(6), self._posture[2][:free_joints]))
-        self._torque_limits = np.concatenate((np.zeros(6), self.limits[:free_joints]))
 
     def _posture_gains(self, name: str) -> TaskGains | PrescribedGains:
         p = self.parameters
@@ -281,18 +293,17 @@ class WholeBodyQp:
 
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
-        program, qdd, points = self.program(body, reference, posture)
+        program, prescribed, points = self.program(body, reference, posture)
         solution = program.solution()
         if solution is None:
             return None
-        m = self._free
-        qdd[:m], edge_forces = solution[0], np.maximum(solution[1], 0.0)
-        torque = body.M @ qdd + body.h
-        # Program B is -J' of the edges; the prescribed joints carry no foot.
-        torque[:m] += program.B @ edge_forces
+        acceleration, edge_forces = np.concatenate((solution[0], prescribed)), np.maximum(solution[1], 0.0)
+        torque = body.M.dot(acceleration) + body.h
+        # The program's B is -J' of the edges; the prescribed joints carry no foot.
+        torque[: self._free] += program.B.dot(edge_forces)
         forces = np.zeros((self._soles.body.size, 3))
-        forces[points] = edge_forces.reshape(-1, 4) @ self._edges.d_W
-        return WholeBodySolution(qdd, forces, np.minimum(np.maximum(torque[6:], -self.limits), self.limits))
+        forces[points] = edge_forces.reshape(-1, 4).dot(self._edges.d_W)
+        return WholeBodySolution(acceleration, forces, np.minimum(np.maximum(torque[6:], -self.limits), self.limits))
 
     def program(
         self, body: Dynamics, reference: WalkingReference, posture: Posture
@@ -300,152 +311,179 @@ class WholeBodyQp:
         """The program, whose unknowns are the accelerations of base, legs and back and the forces along the edges.
 
         Returns:
-            the program; the accelerations of all velocities, of which only those prescribed are not 0 (nv,); the places
-            of the points that may press, four edges each.
+            the program; the accelerations of the joints that are prescribed; the places of the points that may press,
+            four edges each.
         """
         p, m = self.parameters, self._free
-        q, v = body.q[self._q], body.v[6:]
-        stiffness, damping, weight = self._posture
-        wanted = stiffness * (posture.angle - q) + damping * (posture.rate - v)
-        qdd0 = np.zeros(body.v.size)
-        qdd0[m:] = wanted[m - 6 :]
+        q, v = body.q.take(self._q), body.v[6:]
+        wanted = self._stiffness * (posture.angle - q) + self._damping * (posture.rate - v)
+        wanted, prescribed = wanted[: m - 6], wanted[m - 6 :]
 
         J, a, w = self._tasks(body, reference)
-        a -= J @ qdd0
+        a -= J[:, m:].dot(prescribed)
         J = J[:, :m]
         WJ = w[:, None] * J
-        H = J.T @ WJ
-        H.flat[:: m + 1] += self._diagonal
-        g = -(a @ WJ)
-        g[6:] -= (weight * wanted)[: m - 6]
+        H = J.T.dot(WJ)
+        H.ravel()[:: m + 1] += self._diagonal
+        g = -a.dot(WJ)
+        g[6:] -= self._weight * wanted
 
         # The equations of motion M v' + h - J' f = tau: of the base, whose tau is 0, and of the joints.
         points, J_edges, most = self._contacts(body, reference)
         k = most.size
-        rest = (body.h + body.M @ qdd0)[:m]
-        lower, upper = np.full(k + 2 * m, -1e4), np.full(k + 2 * m, 1e4)
-        lower[:k], upper[:k] = 0.0, most
-        slowing = p.range_damping * v
-        towards_lower = p.range_stiffness * (self.lower - q) - slowing
-        towards_upper = p.range_stiffness * (self.upper - q) - slowing
-        lower[k + 6 : k + m] = np.minimum(np.maximum(towards_lower, -1e4), 1e3)[: m - 6]
-        upper[k + 6 : k + m] = np.minimum(np.maximum(towards_upper, -1e3), 1e4)[: m - 6]
-        lower[k + m :], upper[k + m :] = -self._torque_limits - rest, self._torque_limits - rest
-        return QuadraticProgram(H, g, body.M[:m, :m], -J_edges[:, :m].T, lower, upper), qdd0, points
+        bounds = np.empty((2, k + 2 * m))
+        bounds[:, :k] = 0.0
+        bounds[1, :k] = most
+        bounds[:, k : k + m] = FREE
+        towards_ends = p.range_stiffness * (self._range - q[: m - 6]) - p.range_damping * v[: m - 6]
+        bounds[:, k + 6 : k + m] = np.minimum(np.maximum(towards_ends, LEAST), MOST)
+        bounds[:, k + m :] = self._torque_range - (body.h[:m] + body.M[:m, m:].dot(prescribed))
+        program = QuadraticProgram(H, g, body.M[:m, :m], -J_edges[:, :m].T, *bounds)
+        return program, prescribed, points
 
-    # Tasks: rows of J v' = a with weight w.
+    # Tasks: rows of J v' + bias = a with weight w.
 
     def _tasks(self, body: Dynamics, reference: WalkingReference) -> tuple[Array, Array, Array]:
-        p, tasks = self.parameters, _Tasks()
+        """J, a - bias and w."""
+        p, tasks = self.parameters, _Tasks(body)
         x, y, z = body.com.tolist()
         height, rate, lift = reference.com_height
         over_ground = com_acceleration(complex(x, y), reference.zmp, z, lift)
-        gains = p.com_height
-        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - float(body.com_velocity[2]))
-        tasks.add(body.com_J[:2], body.com_bias[:2], (over_ground.real, over_ground.imag), p.com_weight)
-        tasks.add(body.com_J[2:], body.com_bias[2:], (up,), gains.weight)
-        for name, yaw, gains in (("Pelvis", reference.pelvis_yaw, p.pelvis), ("Ribs", reference.chest_yaw, p.chest)):
-            tasks.turn(body.frames[name], yaw, gains)
+        gains, com = p.com_height, 6 * len(body.bodies)
+        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - tasks.velocity[-1])
+        tasks.add((com, com + 1), (over_ground.real, over_ground.imag), p.com_weight)
+        tasks.add((com + 2,), (up,), gains.weight)
+        tasks.turn(self._place["Pelvis"], reference.pelvis_yaw, p.pelvis)
+        tasks.turn(self._place["Ribs"], reference.chest_yaw, p.chest)
         for side in SIDES:
-            foot = reference.foot(side)
-            ankle = body.frames[f"{side}Leg_Ankle"]
+            foot, ankle = reference.foot(side), self._place[f"{side}Leg_Ankle"]
             if foot.task is FootTask.SWING:
                 self._swing(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_OFF:
-                toes = body.frames[f"{side}Leg_FootToes"]
-                tasks.add(toes.J, toes.bias, (-p.stance.damping * toes.V_WB).tolist(), p.stance.weight)
-                sine, cosine = math.sin(foot.yaw), math.cos(foot.yaw)
+                self._stand(tasks, self._place[f"{side}Leg_FootToes"], 0.0)
+                axis = (-math.sin(foot.yaw), math.cos(foot.yaw))
                 angle, rate, acceleration = foot.pitch
-                ex, ey, _ = _rotation_error(foot.yaw, angle, ankle.R_WB)
-                wx, wy, *_ = ankle.V_WB.tolist()
-                error, error_rate = cosine * ey - sine * ex, rate - (cosine * wy - sine * wx)
-                wanted = acceleration + p.heel_off.stiffness * error + p.heel_off.damping * error_rate
-                axis = np.array(((-sine, cosine),))
-                tasks.add(axis @ ankle.J[:2], axis @ ankle.bias[:2], (wanted,), p.heel_off.weight)
+                error, velocity = tasks.rotation_error(ankle, foot.yaw, angle), tasks.turning(ankle)
+                error_y, rate_y = (axis[0] * u[0] + axis[1] * u[1] for u in (error, velocity))
+                gains = p.heel_off
+                wanted = acceleration + gains.stiffness * error_y + gains.damping * (rate - rate_y)
+                about_xy = slice(6 * ankle, 6 * ankle + 2)
+                row = np.array(axis)
+                tasks.add_other(row.dot(body.J[about_xy])[None], (row.dot(body.bias[about_xy]),), (wanted,), gains.weight)
             elif foot.task is FootTask.HEEL_STRIKE:
-                heel, J, velocity, bias = ankle.point(self._heel[side])
-                vx, vy, vz = velocity.tolist()
-                wanted_heel = (-vx, -vy, self._sinking(heel[2]) - vz)
-                tasks.add(J, bias, [p.stance.damping * u for u in wanted_heel], p.stance.weight)
+                heel, J, velocity, bias = body.frame(f"{side}Leg_Ankle").point(self._heel[side])
+                wanted = p.stance.damping * (np.array((0.0, 0.0, self._sinking(heel[2]))) - velocity)
+                tasks.add_other(J, bias, wanted, p.stance.weight)
                 tasks.turn(ankle, foot.yaw, p.heel_strike)
             else:
-                heel_height = float(ankle.p_WB[2] + ankle.R_WB[2] @ self._heel[side])
-                wx, wy, wz, vx, vy, vz = ankle.V_WB.tolist()
-                wanted_foot = (-wx, -wy, -wz, -vx, -vy, self._sinking(heel_height) - vz)
-                tasks.add(ankle.J, ankle.bias, [p.stance.damping * u for u in wanted_foot], p.stance.weight)
+                heel_z = tasks.X_WB[ankle][2]
+                heel_height = heel_z[3] + sum(r * p for r, p in zip(heel_z, self._heel[side], strict=False))
+                self._stand(tasks, ankle, self._sinking(heel_height))
         return tasks.rows()
 
     def _sinking(self, height: float) -> float:
         """Upward speed of a foot that should stand: none, or down where it has not reached the ground yet."""
         return -self.parameters.sinking_speed if height > self.parameters.contact_height else 0.0
 
-    def _swing(self, tasks: _Tasks, foot: FootReference, ankle: FrameMotion) -> None:
+    def _stand(self, tasks: _Tasks, place: int, upward: float) -> None:
+        """A body of a foot does not move but for an upward speed [m/s]."""
+        gains = self.parameters.stance
+        wx, wy, wz, vx, vy, vz = tasks.velocity[6 * place : 6 * place + 6]
+        wanted = [gains.damping * u for u in (-wx, -wy, -wz, -vx, -vy, upward - vz)]
+        tasks.add(range(6 * place, 6 * place + 6), wanted, gains.weight)
+
+    def _swing(self, tasks: _Tasks, foot: FootReference, ankle: int) -> None:
         p, gains = self.parameters, self.parameters.swing_position
         way, (height, rate, lift) = foot.position, foot.height
-        x, y, z = ankle.p_WB.tolist()
-        vx, vy, vz = ankle.V_WB[3:].tolist()
+        x, y, z = (row[3] for row in tasks.X_WB[ankle])
+        vx, vy, vz = tasks.velocity[6 * ankle + 3 : 6 * ankle + 6]
         over_ground = way.acceleration + gains.stiffness * (way.position - complex(x, y))
         over_ground += gains.damping * (way.velocity - complex(vx, vy))
         if abs(over_ground) > p.swing_acceleration_limit:
             over_ground *= p.swing_acceleration_limit / abs(over_ground)
         up = lift + gains.stiffness * (height - z) + gains.damping * (rate - vz)
-        tasks.add(ankle.J[3:], ankle.bias[3:], (over_ground.real, over_ground.imag, up), gains.weight)
+        tasks.add(range(6 * ankle + 3, 6 * ankle + 6), (over_ground.real, over_ground.imag, up), gains.weight)
         tasks.turn(ankle, foot.yaw, p.swing_rotation, *foot.pitch)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
         """Places of the points that may press (k,), Jacobian of their edges (4 k, nv), the bound of the edges' forces."""
         p, soles = self.parameters, self._soles
-        right, left = reference.right, reference.left
-        load = np.where(soles.is_right, right.load, left.load)
-        for foot, is_its in ((right, soles.is_right), (left, ~soles.is_right)):
-            if foot.task is FootTask.HEEL_OFF:
-                load[is_its & soles.is_heel] = 0.0
-        X_WB = body.frames.X_WB[soles.body]
-        p_BoP_W = (X_WB[:, :, :3] @ soles.point)[:, :, 0]
+        load = np.array([self._load(reference.foot(side), is_heel) for side, is_heel in SOLES]).take(soles.sole)
+        X_WB = body.X_WB.take(soles.body, axis=0)
+        p_BoP_W = np.matmul(X_WB[:, :, :3], soles.point)[:, :, 0]
         is_low = X_WB[:, 2, 3] + p_BoP_W[:, 2] < p.contact_height
-        points = np.flatnonzero(is_low & (load > 0.0))
-        along = body.frames.along(soles.body[points], p_BoP_W[points], self._edges)
-        return points, along.reshape(4 * points.size, body.v.size), np.repeat(p.largest_force / self._unit * load[points], 4)
+        (points,) = (is_low & (load > 0.0)).nonzero()
+        J_edges = body.along(soles.body.take(points), p_BoP_W.take(points, axis=0), self._edges)
+        return points, J_edges, (p.largest_force / self._unit * load.take(points)).repeat(4)
+
+    @staticmethod
+    def _load(foot: FootReference, is_heel: bool) -> float:
+        """Share of its strength that a part of a foot may press with."""
+        return 0.0 if is_heel and foot.task is FootTask.HEEL_OFF else foot.load
 
 
-@dataclass(frozen=True)
 class _Tasks:
-    """Rows that are gathered one task after the other."""
+    """Rows of tasks at one state of the body, gathered one after the other; most are rows of the body's own motions.
 
-    J: list[Array] = field(default_factory=list)
-    bias: list[Array] = field(default_factory=list)
-    wanted: list[float] = field(default_factory=list)
-    weight: list[float] = field(default_factory=list)
+    In plain numbers, for all these vectors are short:
 
-    def add(self, J: Array, bias: Array, acceleration: Sequence[float], weight: float) -> None:
+    X_WB: rotation matrix and position of each body, three rows of four.
+    velocity: as in `Dynamics`.
+    """
+
+    def __init__(self, body: Dynamics) -> None:
+        self._body = body
+        self.X_WB: list[list[list[float]]] = body.X_WB.tolist()
+        self.velocity: list[float] = body.velocity.tolist()
+        self._rows: list[int] = []
+        self._wanted: list[float] = []
+        self._weight: list[float] = []
+        self._others: list[tuple[Array, npt.ArrayLike, npt.ArrayLike, list[float]]] = []
+
+    def add(self, rows: Sequence[int], acceleration: Sequence[float], weight: float) -> None:
+        """Some of the body's motions should have these accelerations."""
+        self._rows.extend(rows)
+        self._wanted.extend(acceleration)
+        self._weight.extend([weight] * len(rows))
+
+    def add_other(self, J: Array, bias: npt.ArrayLike, acceleration: npt.ArrayLike, weight: float) -> None:
         """J v' + bias should be this acceleration."""
-        self.J.append(J)
-        self.bias.append(bias)
-        self.wanted.extend(acceleration)
-        self.weight.extend([weight] * len(acceleration))
+        self._others.append((J, bias, acceleration, [weight] * len(J)))
+
+    def turning(self, place: int) -> list[float]:
+        """Angular velocity of a body [rad/s]."""
+        return self.velocity[6 * place : 6 * place + 3]
+
+    def rotation_error(self, place: int, yaw: float, pitch: float) -> Vector:
+        """Rotation vector that turns a body into Rz(yaw) Ry(pitch)."""
+        return rotation_error(yaw, pitch, self.X_WB[place])
 
     def turn(
         self,
-        frame: FrameMotion,
+        place: int,
         yaw: float,
         gains: TaskGains,
         pitch: float = 0.0,
         pitch_rate: float = 0.0,
         pitch_acceleration: float = 0.0,
     ) -> None:
-        """A frame should be turned by a yaw that stays and a pitch that changes."""
+        """A body should be turned by a yaw that stays and a pitch that changes."""
         axis = (-math.sin(yaw), math.cos(yaw), 0.0)
-        error, velocity = _rotation_error(yaw, pitch, frame.R_WB), frame.V_WB[:3].tolist()
         wanted = [
             pitch_acceleration * n + gains.stiffness * e + gains.damping * (pitch_rate * n - w)
-            for n, e, w in zip(axis, error, velocity, strict=True)
+            for n, e, w in zip(axis, self.rotation_error(place, yaw, pitch), self.turning(place), strict=True)
         ]
-        self.add(frame.J[:3], frame.bias[:3], wanted, gains.weight)
+        self.add(range(6 * place, 6 * place + 3), wanted, gains.weight)
 
     def rows(self) -> tuple[Array, Array, Array]:
         """All rows: J, what J v' should be, weight."""
-        wanted: Array = np.array(self.wanted) - np.concatenate(self.bias)
-        return np.concatenate(self.J), wanted, np.array(self.weight)
+        rows = np.array(self._rows)
+        J, wanted = self._body.J.take(rows, axis=0), self._wanted - self._body.bias.take(rows)
+        if not self._others:
+            return J, wanted, np.array(self._weight)
+        other_J, bias, acceleration, weight = zip(*self._others, strict=True)
+        wanted = np.concatenate((wanted, np.concatenate(acceleration) - np.concatenate(bias)))
+        return np.concatenate((J, *other_J)), wanted, np.concatenate((self._weight, *weight))
 
 
 def is_foot_posture(joint_name: str) -> bool:
@@ -456,13 +494,16 @@ def is_foot_posture(joint_name: str) -> bool:
 Vector = tuple[float, float, float]
 
 
-def _rotation_error(yaw: float, pitch: float, R_WB: Array) -> Vector:
-    """Rotation vector in W that turns R_WB into Rz(yaw) Ry(pitch); exact up to a right angle, then bounded."""
+def rotation_error(yaw: float, pitch: float, X_WB: Sequence[Sequence[float]]) -> Vector:
+    """Rotation vector in W that turns R_WB, the first three columns, into Rz(yaw) Ry(pitch).
+
+    Exact up to a right angle, then bounded.
+    """
     c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
     wanted = ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp))
     # The sum of the cross products of actual and wanted axes is twice sine times axis, that of the dot products the trace.
     x = y = z = trace = 0.0
-    for (ax, ay, az), (wx, wy, wz) in zip(R_WB.T.tolist(), wanted, strict=True):
+    for (ax, ay, az), (wx, wy, wz) in zip(zip(*X_WB, strict=True), wanted, strict=False):
         x += ay * wz - az * wy
         y += az * wx - ax * wz
         z += ax * wy - ay * wx

@@ -66,7 +66,7 @@ def newton_residual(body, solution, skeleton):
     total = body.M @ solution.acceleration + body.h
     for sphere, f in zip(contact_spheres(skeleton), solution.forces, strict=True):
         lowest = np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius))
-        total -= body.frames[sphere.body].point(lowest)[1].T @ f
+        total -= body.frame(sphere.body).point(lowest)[1].T @ f
     return total
 
 
@@ -109,13 +109,13 @@ def test_forces_stay_in_the_friction_pyramid_and_torques_in_their_limits(dynamic
 
 def test_a_foot_in_the_air_presses_on_nothing(dynamics, qp):
     body = body_at(dynamics)
-    ankle = body.frames["RightLeg_Ankle"].p_WB
+    ankle = body.frame("RightLeg_Ankle").p_WB
     swing = FootReference(
         FootTask.SWING, 0.0, 0.0, PlanarMotion(complex(ankle[0], ankle[1])), (0.15, 0.0, 0.0), (0.0, 0.0, 0.0)
     )
     solution = qp.solve(body, reference_for(body, zmp=0.02 + 0.0875j, right=swing), rest(qp))
     assert np.abs(solution.forces[:6]).max() == 0.0
-    lift = body.frames["RightLeg_Ankle"].J @ solution.acceleration
+    lift = body.frame("RightLeg_Ankle").J @ solution.acceleration
     assert lift[5] > 1.0
 
 
