@@ -63,8 +63,8 @@ class FrameMotion(NamedTuple):
 class Dynamics:
     """The body at one state; M v' + h = tau + J' f, with gravity and damping in h.
 
-    The motions of some bodies' frames and of the centre of mass are told in rows, all in W: of each body its angular and
-    its translational velocity, in the order of `bodies`, then the velocity of the centre of mass.
+    The motions of some bodies' frames and of the centre of mass are told in rows, all in W: of each body its angular
+    and its translational velocity, in the order of `bodies`, then the velocity of the centre of mass.
 
     q, v: positions and velocities. M: (nv, nv). h: (nv,) [N m, N].
     com: centre of mass (3,) [m].

@@ -176,7 +176,9 @@ class QuadraticProgram(NamedTuple):
             return None
         kind = np.multiply(self.lower == self.upper, EQUATION, dtype=np.int32)
         identity = _identity(k + m)
-        x, _, flag, _ = daqp.solve(identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS)
+        x, _, flag, _ = daqp.solve(
+            identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS
+        )
         return (to_a @ x[k:], x[:k]) if flag > 0 else None
 
 
@@ -361,23 +363,15 @@ class WholeBodyQp:
                 self._swing(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_OFF:
                 self._stand(tasks, self._place[f"{side}Leg_FootToes"], 0.0)
-                axis = (-math.sin(foot.yaw), math.cos(foot.yaw))
-                angle, rate, acceleration = foot.pitch
-                error, velocity = tasks.rotation_error(ankle, foot.yaw, angle), tasks.turning(ankle)
-                error_y, rate_y = (axis[0] * u[0] + axis[1] * u[1] for u in (error, velocity))
-                gains = p.heel_off
-                wanted = acceleration + gains.stiffness * error_y + gains.damping * (rate - rate_y)
-                about_xy = slice(6 * ankle, 6 * ankle + 2)
-                row = np.array(axis)
-                tasks.add_other(row.dot(body.J[about_xy])[None], (row.dot(body.bias[about_xy]),), (wanted,), gains.weight)
+                self._raise_heel(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_STRIKE:
                 heel, J, velocity, bias = body.frame(f"{side}Leg_Ankle").point(self._heel[side])
-                wanted = p.stance.damping * (np.array((0.0, 0.0, self._sinking(heel[2]))) - velocity)
-                tasks.add_other(J, bias, wanted, p.stance.weight)
+                goal = np.array((0.0, 0.0, self._sinking(heel[2])))
+                tasks.add_other(J, bias, p.stance.damping * (goal - velocity), p.stance.weight)
                 tasks.turn(ankle, foot.yaw, p.heel_strike)
             else:
-                heel_z = tasks.X_WB[ankle][2]
-                heel_height = heel_z[3] + sum(r * p for r, p in zip(heel_z, self._heel[side], strict=False))
+                up_B, (x, y, z) = tasks.X_WB[ankle][2], self._heel[side]
+                heel_height = up_B[0] * x + up_B[1] * y + up_B[2] * z + up_B[3]
                 self._stand(tasks, ankle, self._sinking(heel_height))
         return tasks.rows()
 
@@ -391,6 +385,17 @@ class WholeBodyQp:
         wx, wy, wz, vx, vy, vz = tasks.velocity[6 * place : 6 * place + 6]
         wanted = [gains.damping * u for u in (-wx, -wy, -wz, -vx, -vy, upward - vz)]
         tasks.add(range(6 * place, 6 * place + 6), wanted, gains.weight)
+
+    def _raise_heel(self, tasks: _Tasks, foot: FootReference, ankle: int) -> None:
+        """A foot pitches about its own axis; its toes stand."""
+        x, y = -math.sin(foot.yaw), math.cos(foot.yaw)
+        angle, rate, acceleration = foot.pitch
+        (error_x, error_y, _), (wx, wy, _) = tasks.rotation_error(ankle, foot.yaw, angle), tasks.turning(ankle)
+        gains = self.parameters.heel_off
+        wanted = acceleration + gains.stiffness * (x * error_x + y * error_y)
+        wanted += gains.damping * (rate - (x * wx + y * wy))
+        axis, J, bias = np.array((x, y)), *tasks.motion(slice(6 * ankle, 6 * ankle + 2))
+        tasks.add_other(axis.dot(J)[None], (axis.dot(bias),), (wanted,), gains.weight)
 
     def _swing(self, tasks: _Tasks, foot: FootReference, ankle: int) -> None:
         p, gains = self.parameters, self.parameters.swing_position
@@ -406,7 +411,7 @@ class WholeBodyQp:
         tasks.turn(ankle, foot.yaw, p.swing_rotation, *foot.pitch)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
-        """Places of the points that may press (k,), Jacobian of their edges (4 k, nv), the bound of the edges' forces."""
+        """Places of the points that may press (k,), Jacobian of their edges (4 k, nv), the bound of their forces."""
         p, soles = self.parameters, self._soles
         load = np.array([self._load(reference.foot(side), is_heel) for side, is_heel in SOLES]).take(soles.sole)
         X_WB = body.X_WB.take(soles.body, axis=0)
@@ -449,6 +454,10 @@ class _Tasks:
     def add_other(self, J: Array, bias: npt.ArrayLike, acceleration: npt.ArrayLike, weight: float) -> None:
         """J v' + bias should be this acceleration."""
         self._others.append((J, bias, acceleration, [weight] * len(J)))
+
+    def motion(self, rows: slice) -> tuple[Array, Array]:
+        """J and bias of some of the body's motions."""
+        return self._body.J[rows], self._body.bias[rows]
 
     def turning(self, place: int) -> list[float]:
         """Angular velocity of a body [rad/s]."""
@@ -501,7 +510,7 @@ def rotation_error(yaw: float, pitch: float, X_WB: Sequence[Sequence[float]]) ->
     """
     c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
     wanted = ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp))
-    # The sum of the cross products of actual and wanted axes is twice sine times axis, that of the dot products the trace.
+    # The cross products of actual and wanted axes add up to twice sine times axis, the dot products to the trace.
     x = y = z = trace = 0.0
     for (ax, ay, az), (wx, wy, wz) in zip(zip(*X_WB, strict=True), wanted, strict=False):
         x += ay * wz - az * wy

@@ -17,8 +17,8 @@ from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
-from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.gait_planner import GaitPlanner
+from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
 from humanwalk.systems.whole_body_controller import WholeBodyController

@@ -1,6 +1,5 @@
 """Diagram: what the walker is asked for."""
 
-import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from pydrake.systems.primitives import TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
@@ -19,10 +18,10 @@ class CommandSource(Diagram):
         super().__init__()
         self._profile = CommandProfile(parameters)
         knots = self._profile.knots
-        commands = np.transpose([self.command(time) for time in knots])
+        samples = list(zip(*(self.command(time) for time in knots), strict=True))
         builder = DiagramBuilder()
         profile = builder.AddNamedSystem(
-            "profile", TrajectorySource(PiecewisePolynomial.FirstOrderHold(knots, commands))
+            "profile", TrajectorySource(PiecewisePolynomial.FirstOrderHold(knots, samples))
         )
         builder.ExportOutput(profile.get_output_port(), "command")
         builder.BuildInto(self)

@@ -10,6 +10,7 @@ from scipy.sparse import csc_matrix
 from humanwalk.control.joint_map import JointMap
 
 Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int_]
 
 
 class HeldActuation(Diagram):
@@ -41,7 +42,7 @@ class HeldActuation(Diagram):
         n, stiff = kp.size, np.flatnonzero(kp)
         builder = DiagramBuilder()
 
-        def gain(rows: int, columns: int, *entries: tuple[Array, Array, Array]) -> SparseMatrixGain:
+        def gain(rows: int, columns: int, *entries: tuple[Indices, Indices, Array]) -> SparseMatrixGain:
             """Multiplication by a matrix, told by rows, columns and values of its entries."""
             i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
             return builder.AddSystem(SparseMatrixGain(csc_matrix((values, (i, j)), shape=(rows, columns))))
