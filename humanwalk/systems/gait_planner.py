@@ -75,12 +75,12 @@ class GaitPlanner(LeafSystem):
         self._dynamics = BodyDynamics(plant)
         standing = plant.CreateDefaultContext()
         hip_height, ankle_height = (
-            plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2]
+            float(plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2])
             for body in ("Femur_Thigh", "Ankle")
         )
         self._planner = StepPlanner(
             parameters,
-            standing_com_height=plant.CalcCenterOfMassPositionInWorld(standing)[2],
+            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(standing)[2]),
             ankle_height=ankle_height,
             leg_length=hip_height - ankle_height,
             first_swing=first_swing,
@@ -114,7 +114,8 @@ class GaitPlanner(LeafSystem):
             felt = self._foot_forces.Eval(context)
             forces = {side: float(felt[8 * place + 2]) for place, side in enumerate(SIDES)}
         body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), forces)
-        return self._remember(state, *self._planner.update(remembered, body, Command(*self._command.Eval(context))))
+        command = Command(*self._command.Eval(context).tolist())
+        return self._remember(state, *self._planner.update(remembered, body, command))
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(Plan(planned, reference))
