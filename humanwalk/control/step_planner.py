@@ -216,12 +216,16 @@ class StepPlanner:
         return state
 
     def listens(self, state: PlannerState) -> bool:
-        """Whether a touch of the ground would end the step: at other times the update does not look at the forces."""
-        return state.phase is Phase.SINGLE_SUPPORT and self._progress(state) > self.parameters.timing.early_touchdown
+        """Whether the next update may look at the feet's forces: while a foot comes to the ground, early or late."""
+        if state.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
+            return False
+        late = self._progress(state) > self.parameters.timing.early_touchdown
+        return late or state.elapsed <= self.parameters.rockers.heel
 
     def _has_landed(self, state: PlannerState, body: BodyState) -> bool:
-        touches = body.foot(other(state.stance)).force > self.parameters.timing.touchdown_force
-        return self._progress(state) >= 1.0 or (touches and self.listens(state))
+        progress, timing = self._progress(state), self.parameters.timing
+        touches = body.foot(other(state.stance)).force > timing.touchdown_force
+        return progress >= 1.0 or (progress > timing.early_touchdown and touches)
 
     def _progress(self, state: PlannerState) -> float:
         """Share of the swing that is over."""
