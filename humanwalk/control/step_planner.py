@@ -219,7 +219,7 @@ class StepPlanner:
         """Whether the next update may look at the feet's forces: while a foot comes to the ground, early or late."""
         if state.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
             return False
-        late = self._progress(state) > self.parameters.timing.early_touchdown
+        late = self._progress(state) >= self.parameters.timing.early_touchdown
         return late or state.elapsed <= self.parameters.rockers.heel
 
     def _has_landed(self, state: PlannerState, body: BodyState) -> bool:
