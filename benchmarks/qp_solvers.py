@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 import piqp
 from proxsuite import proxqp
+from scipy.linalg import block_diag
 
 from humanwalk.control.whole_body_qp import QuadraticProgram
 from humanwalk.run.simulate import simulate
@@ -30,7 +31,7 @@ def programs_of_a_walk(duration: float) -> list[QuadraticProgram]:
     programs: list[QuadraticProgram] = []
     solution = QuadraticProgram.solution
 
-    def record(self: QuadraticProgram) -> Array | None:
+    def record(self: QuadraticProgram) -> tuple[Array, Array] | None:
         programs.append(self)
         return solution(self)
 
@@ -43,12 +44,19 @@ def programs_of_a_walk(duration: float) -> list[QuadraticProgram]:
 
 
 def parts(program: QuadraticProgram) -> tuple[Array, ...]:
-    """H, g, A, b, C, lower, upper, x_lower, x_upper: equations and inequalities apart, as others want them."""
-    H, g, A, lower, upper = program
+    """H, g, A, b, C, lower, upper, x_lower, x_upper of x = (f, a): equations and inequalities apart."""
+    k, lower, upper = program.B.shape[1], program.lower, program.upper
+    H, g = block_diag(np.eye(k), program.H), np.concatenate((np.zeros(k), program.g))
+    A = np.hstack((program.B, program.A))
     x, rows = slice(0, g.size), slice(g.size, None)
     equation = lower[rows] == upper[rows]
     row_bounds = (A[~equation], lower[rows][~equation], upper[rows][~equation])
     return H, g, A[equation], upper[rows][equation], *row_bounds, lower[x], upper[x]
+
+
+def with_daqp(program: QuadraticProgram) -> Array | None:
+    solution = program.solution()
+    return None if solution is None else np.concatenate(solution[::-1])
 
 
 def with_piqp(tolerance: float) -> Solve:
@@ -68,7 +76,7 @@ def with_proxqp(tolerance: float, warm: bool) -> Solve:
 
     def solve(program: QuadraticProgram) -> Array | None:
         matrices = parts(program)
-        size = program.g.size
+        size = len(matrices[0])
         solver = solvers.get(size) if warm else None
         if solver is None:
             solver = solvers[size] = proxqp.dense.QP(size, len(matrices[3]), len(matrices[5]), True)
@@ -95,7 +103,7 @@ def main() -> None:
     exact = with_piqp(1e-9)
     references = [exact(program) for program in programs]
     solvers = {
-        "DAQP, cold": QuadraticProgram.solution,
+        "DAQP, cold": with_daqp,
         "PIQP 1e-6, cold": with_piqp(1e-6),
         "ProxQP 1e-4, cold": with_proxqp(1e-4, warm=False),
         "ProxQP 1e-4, warm": with_proxqp(1e-4, warm=True),
@@ -108,7 +116,7 @@ def main() -> None:
             x = solve(program)
             times[name].append(1e3 * (time.process_time() - began))
             if x is not None and reference is not None:
-                errors[name].append(float(np.abs(x - reference)[:34].max()))
+                errors[name].append(float(np.abs(x - reference)[-34:].max()))
     unsolved = sum(reference is None for reference in references)
     print(f"{len(programs)} programs, {unsolved} without reference; processor time")
     print(f"{'solver':20}{'median ms':>10}{'mean ms':>9}{'99 % ms':>9}{'failures':>9}{'worst error':>13}")

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable
+from pydrake.multibody.tree import JacobianWrtVariable, MultibodyForces
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.groups import FOOT_BODIES
 from humanwalk.control.joint_map import JointMap
+from humanwalk.control.scalars import clip
 from humanwalk.control.walking_reference import BodyState, FootState
 
 Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int_]
+
+BY_V = JacobianWrtVariable.kV
+ORIGIN = np.zeros(3)
 
 
 @dataclass(frozen=True)
@@ -32,8 +38,7 @@ class Directions:
         return Directions(d_W, np.hstack([_cross_matrix(d) for d in d_W]))
 
 
-@dataclass(frozen=True)
-class FrameMotion:
+class FrameMotion(NamedTuple):
     """A body frame B: pose, velocity, and acceleration = J v' + bias, all [angular; translational] in W.
 
     R_WB: (3, 3). p_WB: (3,) [m]. J: (6, nv). V_WB: (6,) [rad/s, m/s]. bias: (6,) [rad/s2, m/s2].
@@ -47,36 +52,24 @@ class FrameMotion:
 
     def point(self, p_BoP_B: Array) -> tuple[Array, Array, Array, Array]:
         """A point P fixed to B: position (3,), Jacobian (3, nv), velocity (3,), bias of the acceleration (3,)."""
-        r = self.R_WB @ p_BoP_B
-        w = self.V_WB[:3]
-        cross = _cross_matrix(r)
-        J = self.J[3:] - cross @ self.J[:3]
-        velocity = self.V_WB[3:] - cross @ w
-        bias = self.bias[3:] - cross @ self.bias[:3] + _cross_matrix(w) @ _cross_matrix(w) @ r
-        return self.p_WB + r, J, velocity, bias
-
-    def along(self, points: Array, directions: Directions) -> Array:
-        """Jacobian of the velocities of points along directions; shape (points x directions, nv).
-
-        Args:
-            points: fixed to B, in B, shape (k, 3) [m].
-            directions: the same at every point.
-        """
-        # Of every point and direction the moment and the direction, which one product takes to the joints.
-        wrenches = np.empty((len(points), len(directions.d_W), 6))
-        wrenches[..., :3] = ((points @ self.R_WB.T) @ directions.moments).reshape(len(points), -1, 3)
-        wrenches[..., 3:] = directions.d_W
-        along: Array = wrenches.reshape(-1, 6) @ self.J
-        return along
+        r = self.R_WB.dot(p_BoP_B)
+        w = _cross_matrix(self.V_WB[:3])
+        # What an angular and a translational vector of B are at P: v + w x r.
+        to_P = np.hstack((-_cross_matrix(r), np.eye(3)))
+        return self.p_WB + r, to_P.dot(self.J), to_P.dot(self.V_WB), to_P.dot(self.bias) + w.dot(w.dot(r))
 
 
 @dataclass(frozen=True)
 class Dynamics:
     """The body at one state; M v' + h = tau + J' f, with gravity and damping in h.
 
+    The motions of some bodies' frames and of the centre of mass are told in rows, all in W: of each body its angular
+    and its translational velocity, in the order of `bodies`, then the velocity of the centre of mass.
+
     q, v: positions and velocities. M: (nv, nv). h: (nv,) [N m, N].
-    com, com_velocity: of the centre of mass in W, (3,) [m, m/s]; its acceleration is com_J v' + com_bias.
-    frames: by body name.
+    com: centre of mass (3,) [m].
+    bodies: names of pelvis, ribs and the bodies of the feet. X_WB: rotation matrix and position of each, (n, 3, 4) [m].
+    velocity: (6 n + 3,) = J v [rad/s, m/s]; its derivative is J v' + bias. J: (6 n + 3, nv). bias: (6 n + 3,).
     """
 
     q: Array
@@ -84,17 +77,51 @@ class Dynamics:
     M: Array
     h: Array
     com: Array
-    com_velocity: Array
-    com_J: Array
-    com_bias: Array
-    frames: dict[str, FrameMotion]
+    bodies: tuple[str, ...]
+    X_WB: Array
+    velocity: Array
+    J: Array
+    bias: Array
+
+    def frame(self, body: str) -> FrameMotion:
+        """One body's frame."""
+        i = self.bodies.index(body)
+        X_WB, rows = self.X_WB[i], slice(6 * i, 6 * i + 6)
+        return FrameMotion(X_WB[:, :3], X_WB[:, 3], self.J[rows], self.velocity[rows], self.bias[rows])
+
+    @property
+    def com_J(self) -> Array:
+        """Jacobian of the centre of mass (3, nv)."""
+        return self.J[-3:]
+
+    @property
+    def com_bias(self) -> Array:
+        """Acceleration of the centre of mass where v' = 0, (3,) [m/s2]."""
+        return self.bias[-3:]
+
+    def along(self, which: Indices, p_BoP_W: Array, directions: Directions) -> Array:
+        """Jacobian of the velocities of points along directions; shape (points x directions, nv).
+
+        Args:
+            which: place of each point's body, (k,).
+            p_BoP_W: from the body's origin to the point, in W, shape (k, 3) [m].
+            directions: the same at every point.
+        """
+        k, d = len(which), len(directions.d_W)
+        # Of every point and direction the moment and the direction, which a product takes to the joints.
+        wrenches = np.empty((k, d, 6))
+        wrenches[..., :3] = p_BoP_W.dot(directions.moments).reshape(k, d, 3)
+        wrenches[..., 3:] = directions.d_W
+        J = self.J[:-3].reshape(len(self.bodies), 6, -1)
+        along: Array = np.matmul(wrenches, J.take(which, axis=0)).reshape(k * d, self.v.size)
+        return along
 
 
 class BodyDynamics:
     """Computes `Dynamics` with a plant and a context of its own.
 
     Args:
-        plant: finalised model of the body whose floating base is `Pelvis`.
+        plant: finalised model of the body whose floating base is `Pelvis`, its velocities the first.
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
@@ -103,66 +130,66 @@ class BodyDynamics:
         self.mass = plant.CalcTotalMass(plant.CreateDefaultContext())
         self._context = plant.CreateDefaultContext()
         self._world = plant.world_frame()
-        names = ("Pelvis", "Ribs", *FOOT_BODIES["Right"], *FOOT_BODIES["Left"])
-        self._frames = {name: plant.GetFrameByName(name) for name in names}
+        self.bodies = ("Pelvis", "Ribs", *FOOT_BODIES["Right"], *FOOT_BODIES["Left"])
+        bodies = [plant.GetBodyByName(name) for name in self.bodies]
+        self._frames = [(body.body_frame(), int(body.index())) for body in bodies]
+        self._ankles = {side: plant.GetFrameByName(f"{side}Leg_Ankle") for side in SIDES}
         self._damping = np.zeros(plant.num_velocities())
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
+        self._no_acceleration = np.zeros(plant.num_velocities())
+        self._upward = self._no_acceleration.copy()
+        self._upward[3:6] = -plant.gravity_field().gravity_vector()
+        self._no_forces = MultibodyForces(plant)
 
-    def at(self, state: Array, frames: Sequence[str]) -> Dynamics:
-        """The body at a plant state [q; v], with the frames of the bodies that are named."""
-        plant, context = self.plant, self._context
+    def at(self, state: Array) -> Dynamics:
+        """The body at a plant state [q; v]."""
+        plant, context, world = self.plant, self._context, self._world
         plant.SetPositionsAndVelocities(context, state)
-        v = state[plant.num_positions() :]
+        q, v = state[: plant.num_positions()], state[plant.num_positions() :]
+        n = len(self._frames)
+        X_WB, J, bias = np.empty((n, 3, 4)), np.empty((6 * n + 3, v.size)), np.empty(6 * n + 3)
+        accelerations = plant.CalcSpatialAccelerationsFromVdot(context, self._no_acceleration)
+        for i, (frame, body) in enumerate(self._frames):
+            rows = slice(6 * i, 6 * i + 6)
+            X_WB[i] = frame.CalcPoseInWorld(context).GetAsMatrix34()
+            J[rows] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
+            bias[rows] = accelerations[body].get_coeffs()
         M = plant.CalcMassMatrix(context)
-        coriolis = plant.CalcBiasTerm(context)
+        # To a body that is accelerated upward at rest, inertia is what gravity is to one that is not.
+        h = plant.CalcInverseDynamics(context, self._upward, self._no_forces)
         # Translational rows of a floating base: momentum and its rate (the pelvis' velocities are given in W).
-        return Dynamics(
-            q=state[: plant.num_positions()],
-            v=v,
-            M=M,
-            h=coriolis - plant.CalcGravityGeneralizedForces(context) + self._damping * v,
-            com=plant.CalcCenterOfMassPositionInWorld(context),
-            com_velocity=M[3:6] @ v / self.mass,
-            com_J=M[3:6] / self.mass,
-            com_bias=coriolis[3:6] / self.mass,
-            frames={name: self._frame(name, v) for name in frames},
-        )
+        np.divide(M[3:6], self.mass, out=J[-3:])
+        bias[-3:] = h[3:6] / self.mass - self._upward[3:6]
+        com = plant.CalcCenterOfMassPositionInWorld(context)
+        return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J.dot(v), J, bias)
 
-    def _frame(self, name: str, v: Array) -> FrameMotion:
-        plant, context, frame = self.plant, self._context, self._frames[name]
-        X_WB = frame.CalcPoseInWorld(context).GetAsMatrix34()
-        of_origin = (context, JacobianWrtVariable.kV, frame, np.zeros(3), self._world, self._world)
-        J = plant.CalcJacobianSpatialVelocity(*of_origin)
-        bias = plant.CalcBiasSpatialAcceleration(*of_origin)
-        return FrameMotion(X_WB[:, :3], X_WB[:, 3], J, J @ v, bias.get_coeffs())
-
-    def body_state(self, state: Array, time: float, foot_forces: dict[Side, float]) -> BodyState:
+    def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float]) -> BodyState:
         """What the step planner wants to know, from a plant state [q; v] and the feet's vertical forces [N]."""
         plant, context = self.plant, self._context
         plant.SetPositionsAndVelocities(context, state)
-        com = plant.CalcCenterOfMassPositionInWorld(context)
-        velocity = plant.CalcCenterOfMassTranslationalVelocityInWorld(context)
+        x, y, z = plant.CalcCenterOfMassPositionInWorld(context).tolist()
+        vx, vy, _ = plant.CalcCenterOfMassTranslationalVelocityInWorld(context).tolist()
         right, left = (self._foot_state(side, foot_forces[side]) for side in SIDES)
-        return BodyState(time, complex(com[0], com[1]), complex(velocity[0], velocity[1]), com[2], right, left)
+        return BodyState(time, complex(x, y), complex(vx, vy), z, right, left)
 
     def _foot_state(self, side: Side, force: float) -> FootState:
-        frame = self._frames[f"{side}Leg_Ankle"]
-        X_WB = frame.CalcPoseInWorld(self._context).GetAsMatrix34()
-        V_WB = frame.CalcSpatialVelocityInWorld(self._context).get_coeffs()
-        R, p, w, v = X_WB[:, :3], X_WB[:, 3], V_WB[:3], V_WB[3:]
-        yaw = math.atan2(R[1, 0], R[0, 0])
+        ankle = self._ankles[side]
+        (xx, _, _, px), (xy, _, _, py), (xz, _, _, pz) = ankle.CalcPoseInWorld(self._context).GetAsMatrix34().tolist()
+        wx, wy, _, vx, vy, vz = ankle.CalcSpatialVelocityInWorld(self._context).get_coeffs().tolist()
+        yaw = math.atan2(xy, xx)
         return FootState(
-            position=complex(p[0], p[1]),
-            velocity=complex(v[0], v[1]),
-            height=float(p[2]),
-            height_rate=float(v[2]),
+            position=complex(px, py),
+            velocity=complex(vx, vy),
+            height=pz,
+            height_rate=vz,
             yaw=yaw,
-            pitch=math.asin(max(min(-R[2, 0], 1.0), -1.0)),
-            pitch_rate=float(-math.sin(yaw) * w[0] + math.cos(yaw) * w[1]),
+            pitch=math.asin(clip(-xz, -1.0, 1.0)),
+            pitch_rate=math.cos(yaw) * wy - math.sin(yaw) * wx,
             force=force,
         )
 
 
 def _cross_matrix(a: Array) -> Array:
-    return np.array(((0.0, -a[2], a[1]), (a[2], 0.0, -a[0]), (-a[1], a[0], 0.0)))
+    x, y, z = a.tolist()
+    return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))

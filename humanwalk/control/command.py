@@ -82,6 +82,14 @@ class CommandProfile:
                 values += [value, target]
             self._knots.append((np.array(times), np.array(values)))
 
+    @property
+    def knots(self) -> list[float]:
+        """Times between which everything that is commanded changes at constant rates; at least two [s]."""
+        times = sorted({float(time) for times, _ in self._knots for time in times})
+        # Two that differ by rounding are one.
+        apart = [time for time, before in zip(times, [-1.0, *times], strict=False) if time > before + 1e-9]
+        return [*apart, apart[-1] + 1.0]
+
     def at(self, time: float) -> Command:
         """The command at a time [s]."""
         return Command(*(float(np.interp(time, times, values)) for times, values in self._knots))

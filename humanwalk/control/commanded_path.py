@@ -6,8 +6,9 @@ Points of the ground plane are complex numbers x + iy [m]; headings are angles a
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 from humanwalk.control.command import Command
 from humanwalk.control.scalars import clip
@@ -23,8 +24,7 @@ REMEMBERED = 40
 """Number of these places: the last two metres."""
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """A place on the path: position [m], heading there [rad], turn rate there [rad/s], way since the start [m]."""
 
     position: complex
@@ -90,7 +90,7 @@ class CommandedPath:
 
     def moved(self, way: complex) -> CommandedPath:
         """The path somewhere else [m]."""
-        return CommandedPath(tuple(replace(place, position=place.position + way) for place in self.places))
+        return CommandedPath(tuple(place._replace(position=place.position + way) for place in self.places))
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,6 @@ def noisy_tasks(parameters: WholeBodyParameters, noise: float, random: np.random
     for field in fields(parameters):
         gains = getattr(parameters, field.name)
         if isinstance(gains, TaskGains | PrescribedGains):
-            stiffness, damping = gain_factors(2, noise, random)
+            stiffness, damping = gain_factors(2, noise, random).tolist()
             changed[field.name] = replace(gains, stiffness=gains.stiffness * stiffness, damping=gains.damping * damping)
     return replace(parameters, **changed)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 GRAVITY = 9.81
@@ -27,8 +26,7 @@ def divergent_component(com: complex, velocity: complex, frequency: float) -> co
     return com + velocity / frequency
 
 
-@dataclass(frozen=True)
-class ZmpSegment:
+class ZmpSegment(NamedTuple):
     """The zero-moment point on a straight line at constant speed.
 
     start, end: where it is at the beginning and at the end [m].
@@ -93,8 +91,7 @@ class HalfSteps(NamedTuple):
     right: complex
 
 
-@dataclass(frozen=True)
-class PeriodicGait:
+class PeriodicGait(NamedTuple):
     """A walk that repeats itself every two steps, turned by twice `turn`.
 
     A step begins when a foot lands: the zero-moment point goes to it from the old foot (double support), and along

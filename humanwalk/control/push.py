@@ -53,6 +53,11 @@ class PushParameters:
     random_until: float = quantity(60.0, "s", 0.0, 3600.0)
     """Random pushes end here."""
 
+    @property
+    def any(self) -> bool:
+        """Whether there may be a push."""
+        return bool(self.pushes) or self.random_interval > 0.0
+
 
 def pushes_of(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
     """All pushes, those that are random drawn from `seed`."""

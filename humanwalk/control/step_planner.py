@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from humanwalk.body import SIDES, Side
 from humanwalk.control.base_of_support import BaseOfSupport
@@ -96,8 +97,7 @@ class StepPlannerParameters:
     """A step that is commanded slower than this is the last."""
 
 
-@dataclass(frozen=True)
-class Swing:
+class Swing(NamedTuple):
     """The foot in the air: its way over ground, its profile, the foothold it is going to, yaw and toes as it left."""
 
     motion: PlanarMotion
@@ -107,8 +107,7 @@ class Swing:
     start_toes: float
 
 
-@dataclass(frozen=True)
-class PlannerState:
+class PlannerState(NamedTuple):
     """What the planner remembers from tick to tick.
 
     phase; elapsed: in the phase for standing and shift, in the step for double and single support [s].
@@ -206,21 +205,32 @@ class StepPlanner:
         timing = self.parameters.timing
         moving = abs(command.speed) > self.parameters.stop_speed or abs(command.turn) > self.parameters.stop_speed
         if state.phase is Phase.STAND and moving:
-            return replace(state, phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
+            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
             # The shift is the first step's double support: the foot that was left carries nothing any more.
-            return self._lift_off(replace(state, elapsed=timing.double_support), body, command)
+            return self._lift_off(state._replace(elapsed=timing.double_support), body, command)
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
             return self._lift_off(state, body, command)
         if state.phase is Phase.SINGLE_SUPPORT and self._has_landed(state, body):
             return self._touch_down(state, body, command, moving)
         return state
 
+    def listens(self, state: PlannerState) -> bool:
+        """Whether the next update may look at the feet's forces: while a foot comes to the ground, early or late."""
+        if state.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
+            return False
+        late = self._progress(state) >= self.parameters.timing.early_touchdown
+        return late or state.elapsed <= self.parameters.rockers.heel
+
     def _has_landed(self, state: PlannerState, body: BodyState) -> bool:
-        timing = self.parameters.timing
-        progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
+        progress, timing = self._progress(state), self.parameters.timing
         touches = body.foot(other(state.stance)).force > timing.touchdown_force
         return progress >= 1.0 or (progress > timing.early_touchdown and touches)
+
+    def _progress(self, state: PlannerState) -> float:
+        """Share of the swing that is over."""
+        timing = self.parameters.timing
+        return (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
 
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         timing = self.parameters.timing
@@ -239,7 +249,7 @@ class StepPlanner:
         motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.leaving(pace))
         left_as = self._other_foot(state, command, None, 1.0)
         swing = Swing(motion, profile, foot.position, foot.yaw, left_as.toes[0])
-        return replace(state, phase=Phase.SINGLE_SUPPORT, swing=swing)
+        return state._replace(phase=Phase.SINGLE_SUPPORT, swing=swing)
 
     def _touch_down(self, state: PlannerState, body: BodyState, command: Command, moving: bool) -> PlannerState:
         """The swinging foot becomes the stance foot; both are where they are measured, so that no error adds up."""
@@ -271,7 +281,7 @@ class StepPlanner:
         foot, timing = body.foot(state.stance), self.parameters.timing
         if foot.force >= timing.touchdown_force or state.elapsed > self.parameters.rockers.heel or state.walked == 0:
             return state
-        return replace(state, right=foot.position) if state.stance == "Right" else replace(state, left=foot.position)
+        return state._replace(right=foot.position) if state.stance == "Right" else state._replace(left=foot.position)
 
     # Standing.
 
@@ -295,7 +305,7 @@ class StepPlanner:
         zmp = self._supported(state, zmp, both=True)
         feet: dict[Side, FootReference] = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in SIDES}
         path = state.path.advanced(command, self.period)
-        next_state = replace(state, elapsed=state.elapsed + self.period, path=path)
+        next_state = state._replace(elapsed=state.elapsed + self.period, path=path)
         next_state, height = self._height(next_state, 0.0)
         return next_state, self._reference(state, body, zmp, xi, reference, height, feet, state.middle)
 
@@ -351,8 +361,7 @@ class StepPlanner:
             reach = (swing.foothold - com) / u
             highest = self.parameters.height.highest_for(reach, self.leg_length, self.standing_com_height)
         next_state, height = self._height(state, command.forward, highest)
-        next_state = replace(
-            next_state,
+        next_state = next_state._replace(
             elapsed=state.elapsed + rate * self.period,
             swing=swing,
             path=state.path.advanced(command, self.period),
@@ -366,7 +375,7 @@ class StepPlanner:
         if remaining > placement.freeze:
             is_first = state.elapsed - timing.double_support < 0.5 * self.period
             share = 1.0 if is_first else self.period / (self.period + placement.smoothing)
-            swing = replace(swing, foothold=swing.foothold + share * (goal - swing.foothold))
+            swing = swing._replace(foothold=swing.foothold + share * (goal - swing.foothold))
         pace = command.speed * cmath.exp(1j * state.heading)
         landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
         motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
@@ -376,7 +385,7 @@ class StepPlanner:
             passing, share = PlanarMotion(stance + u * way_round[0]), way_round[1]
             aside = swing.motion.towards(passing, share * remaining / rate, self.period, law.jerk_limit)
             motion = motion.with_sideways_of(aside, state.heading)
-        return replace(swing, motion=motion)
+        return swing._replace(motion=motion)
 
     def _gait(self, state: PlannerState, command: Command) -> PeriodicGait:
         """The periodic walk that is wanted now: as commanded, and a little towards the path."""
@@ -430,7 +439,7 @@ class StepPlanner:
                 since = rockers.ball + state.elapsed
                 return rockers.over_ball(since, timing.double_support, load, state.old_heading, pace)
             return FootReference(FootTask.FLAT, load, state.old_heading)
-        progress = (state.elapsed - timing.double_support) / (timing.step - timing.double_support)
+        progress = self._progress(state)
         profile = swing.profile.at(progress)
         relaxed, slope = blend(progress / TOES_RELAXED)
         slope *= rate / (TOES_RELAXED * (timing.step - timing.double_support))
@@ -475,7 +484,7 @@ class StepPlanner:
         height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period, stretched)
         above = law.arc(state.elapsed, self.parameters.timing.step, forward_speed)
         reference = (state.height + above[0], state.height_rate + above[1], acceleration + above[2])
-        return replace(state, height=height, height_rate=rate), reference
+        return state._replace(height=height, height_rate=rate), reference
 
     # Both.
 

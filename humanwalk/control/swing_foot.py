@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,8 +64,7 @@ class SwingParameters:
         return self.push_off * abs(pace) * pace
 
 
-@dataclass(frozen=True)
-class PlanarMotion:
+class PlanarMotion(NamedTuple):
     """Position, velocity and acceleration of a point over ground, complex [m, m/s, m/s2]."""
 
     position: complex
@@ -102,8 +102,7 @@ class PlanarMotion:
         )
 
 
-@dataclass(frozen=True)
-class HeightAndPitch:
+class HeightAndPitch(NamedTuple):
     """Height of the ankle [m] and pitch of the foot [rad, toes down positive] with rates and accelerations."""
 
     height: float
@@ -114,11 +113,31 @@ class HeightAndPitch:
     pitch_acceleration: float
 
 
+class Cubic(NamedTuple):
+    """a + b s + c s^2 + d s^3."""
+
+    a: float
+    b: float
+    c: float
+    d: float
+
+    def at(self, s: float, rate: float) -> tuple[float, float, float]:
+        """Value, and the first two derivatives by time while s grows at a rate [1/s]."""
+        a, b, c, d = self
+        return (
+            a + s * (b + s * (c + s * d)),
+            rate * (b + s * (2.0 * c + 3.0 * d * s)),
+            rate * rate * (2.0 * c + 6.0 * d * s),
+        )
+
+
 @dataclass(frozen=True)
 class SwingProfile:
     """Height and pitch of a swinging foot over its progress from 0 at lift-off to 1 at touchdown."""
 
-    spline: CubicHermite
+    pieces: tuple[tuple[Cubic, Cubic], ...]
+    """Height and pitch over equal shares of the progress."""
+
     duration: float
 
     @staticmethod
@@ -152,11 +171,13 @@ class SwingProfile:
         quarter = duration / (len(points) - 1)
         tangents[0] = height_rate * quarter, pitch_rate * quarter
         tangents[-1] = -parameters.landing_speed * quarter, 0.0
-        return SwingProfile(CubicHermite(points, tangents), duration)
+        coefficients = CubicHermite(points, tangents).coefficients.tolist()
+        return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients), duration)
 
     def at(self, progress: float) -> HeightAndPitch:
         """The profile at a progress in [0, 1]; beyond, it stays at its ends' values."""
-        u = min(max(progress, 0.0), 1.0) * self.spline.segments
-        rate = self.spline.segments / self.duration
-        (z, pitch), (dz, dpitch), (ddz, ddpitch) = (self.spline.derivative(u, order) for order in (0, 1, 2))
-        return HeightAndPitch(z, dz * rate, ddz * rate**2, pitch, dpitch * rate, ddpitch * rate**2)
+        u = clip(progress, 0.0, 1.0) * len(self.pieces)
+        i = min(int(u), len(self.pieces) - 1)
+        rate = len(self.pieces) / self.duration
+        height, pitch = self.pieces[i]
+        return HeightAndPitch(*height.at(u - i, rate), *pitch.at(u - i, rate))

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from itertools import product
 from typing import NamedTuple
 
 import daqp
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dpotrf, dtrtri
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
-from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics, FrameMotion
+from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics
 from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
 
+FREE = np.array(((-1e4,), (1e4,)))
+"""Bounds of an acceleration that has none [rad/s2, m/s2]."""
+LEAST, MOST = np.array(((-1e4,), (-1e3,))), np.array(((1e3,), (1e4,)))
+"""Least and greatest values of an acceleration's lower and upper bound at the ends of a joint's range [rad/s2]."""
 EQUATION = 5
 """DAQP's word for a constraint that is an equation."""
 MOST_ITERATIONS = 500
@@ -111,7 +116,7 @@ class WholeBodyParameters:
     effort: float = quantity(1e-4, "", 0.0, 1.0)
     """Cost per squared joint acceleration."""
 
-    force: float = quantity(1e-6, "1/N2", 0.0, 1.0)
+    force: float = quantity(1e-6, "1/N2", 1e-12, 1.0)
     """Cost per squared contact force."""
 
     friction: float = quantity(0.55, "", 0.1, 1.0)
@@ -137,53 +142,85 @@ class WholeBodyParameters:
 
 
 class QuadraticProgram(NamedTuple):
-    """min x'Hx/2 + g'x subject to lower <= (x, A x) <= upper; where both are equal it is an equation."""
+    """min a'Ha/2 + g'a + f'f/2 subject to lower <= (f, a, A a + B f) <= upper; where both are equal it is an equation.
+
+    H: (m, m). g: (m,). A: (rows, m). B: (rows, k). lower, upper: (k + m + rows,).
+    """
 
     H: Array
     g: Array
     A: Array
+    B: Array
     lower: Array
     upper: Array
 
-    def solution(self) -> Array | None:
-        """The least x, or None where the solver finds none.
+    def solution(self) -> tuple[Array, Array] | None:
+        """The least a and f, or None where the solver finds none.
 
         The same program has the same solution to the last bit.
         """
-        # DAQP passes over a constraint that is not a number.
-        if not all(np.isfinite(part).all() for part in self):
+        # DAQP inverts H in plain loops, which would take longer than all the rest. With H = U'U and y = U a the cost is
+        # y'y/2 and linear terms; the bounds of a become rows, those of f stay simple ones, of the first variables.
+        U, undefined = dpotrf(self.H.T, clean=1)
+        if undefined:
             return None
-        kind = np.where(self.lower == self.upper, EQUATION, 0).astype(np.int32)
-        x, _, flag, _ = daqp.solve(self.H, self.g, self.A, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS)
-        return x if flag > 0 else None
+        to_a, _ = dtrtri(U, overwrite_c=1)
+        (rows, m), k = self.A.shape, self.B.shape[1]
+        constraints, cost = np.zeros((m + rows, k + m)), np.zeros(k + m)
+        constraints[:m, k:] = to_a
+        constraints[m:, :k] = self.B
+        np.matmul(self.A, to_a, out=constraints[m:, k:])
+        np.matmul(self.g, to_a, out=cost[k:])
+        # DAQP passes over a constraint that is not a number.
+        if not math.isfinite(np.vdot(constraints, constraints) + cost @ cost + self.lower @ self.upper):
+            return None
+        kind = np.multiply(self.lower == self.upper, EQUATION, dtype=np.int32)
+        identity = _identity(k + m)
+        x, _, flag, _ = daqp.solve(
+            identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS
+        )
+        return (to_a @ x[k:], x[:k]) if flag > 0 else None
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
+
+
+SOLES: tuple[tuple[Side, bool], ...] = tuple(product(SIDES, (True, False)))
+"""The parts of the feet that may press or not as one: of each foot the hind-foot (True), and the rest."""
 
 
 @dataclass(frozen=True)
-class SolePoints:
-    """The contact points under one body of a foot.
+class Soles:
+    """The contact points under the bodies of both feet, k of them.
 
-    points: in the body's frame (k, 3) [m]. places: of these points among all that a solution's forces are given for.
+    body: place of each point's body among those of `Dynamics`, (k,). point: in that body's frame, (k, 3, 1) [m].
+    sole: place of the part of a foot that it is under in `SOLES`, (k,).
     """
 
-    side: Side
-    body: str
-    points: Array
-    places: Indices
+    body: Indices
+    point: Array
+    sole: Indices
 
-    @property
-    def is_heel(self) -> bool:
-        """Whether this is the hind-foot."""
-        return self.body.endswith("Ankle")
+    @staticmethod
+    def of(spheres: Sequence[ContactSphere], bodies: Sequence[str]) -> Soles:
+        """The lowest points of the spheres, in their order, when the feet stand flat."""
+        return Soles(
+            np.array([bodies.index(sphere.body) for sphere in spheres]),
+            np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])[:, :, None],
+            np.array([SOLES.index((side_of(sphere.body), sphere.body.endswith("Ankle"))) for sphere in spheres]),
+        )
+
+    def heel(self, side: Side) -> Array:
+        """The middle of the points under a foot's hind-foot, in its frame (3,) [m]."""
+        middle: Array = self.point[self.sole == SOLES.index((side, True)), :, 0].mean(axis=0)
+        return middle
 
 
-def _soles(spheres: Sequence[ContactSphere]) -> tuple[SolePoints, ...]:
-    lowest = np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])
-    soles = []
-    for side in SIDES:
-        for body in FOOT_BODIES[side]:
-            places = np.array([i for i, sphere in enumerate(spheres) if sphere.body == body])
-            soles.append(SolePoints(side, body, lowest[places], places))
-    return tuple(soles)
+def side_of(body: str) -> Side:
+    """The side that a leg's body is of."""
+    return "Right" if body.startswith("Right") else "Left"
 
 
 @dataclass(frozen=True)
@@ -212,7 +249,7 @@ class WholeBodyQp:
     """Builds and solves the program; keeps nothing from one call to the next.
 
     Args:
-        dynamics: of the body.
+        dynamics: of the body. Its prescribed joints (arms, neck and head) come last.
         spheres: contact points of the soles.
         parameters: tasks and limits.
     """
@@ -225,21 +262,26 @@ class WholeBodyQp:
         order = np.argsort(joints.v)
         self.names = tuple(joints.names[i] for i in order)
         self._q = joints.q[order]
-        self.lower, self.upper = joints.lower[order].copy(), joints.upper[order].copy()
         self.limits = joints.effort_limits[order]
         gains = [self._posture_gains(name) for name in self.names]
-        self._posture = tuple(np.array([getattr(g, f, 0.0) for g in gains]) for f in ("stiffness", "damping", "weight"))
-        is_arm = np.array([g is parameters.arms for g in gains])
-        self._prescribed = np.flatnonzero(is_arm) + 6
-        self._free = np.concatenate((np.arange(6), np.flatnonzero(~is_arm) + 6))
-        self._free_joints = np.flatnonzero(~is_arm)
-        for i, name in enumerate(self.names):
-            if "LegTibia" in name:
-                self.lower[i] += parameters.knee_margin
-        self._soles = _soles(spheres)
-        self._heel = {sole.side: sole.points.mean(axis=0) for sole in self._soles if sole.is_heel}
-        mu = parameters.friction
-        self._edges = Directions.of(np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float))
+        self._stiffness, self._damping = np.array([(g.stiffness, g.damping) for g in gains]).T.copy()
+        tasks = [g for g in gains if isinstance(g, TaskGains)]
+        self._free = m = 6 + len(tasks)
+        """Number of velocities whose accelerations are unknown: the first ones."""
+        assert gains[: m - 6] == tasks, "the model file has a prescribed joint before a free one"
+        self._weight = np.array([g.weight for g in tasks])
+        self._diagonal = parameters.effort + np.concatenate((np.zeros(6), self._weight))
+        margin = np.array([parameters.knee_margin * ("LegTibia" in name) for name in self.names])
+        self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
+        torque_limits = np.concatenate((np.zeros(6), self.limits[: m - 6]))
+        self._torque_range = np.array((-torque_limits, torque_limits))
+        self._place = {name: i for i, name in enumerate(dynamics.bodies)}
+        self._soles = Soles.of(spheres, dynamics.bodies)
+        self._heel = {side: self._soles.heel(side).tolist() for side in SIDES}
+        mu, self._unit = parameters.friction, parameters.force**-0.5
+        """Forces are counted in the unit whose square costs 1/2 [N]."""
+        edges = np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
+        self._edges = Directions.of(self._unit * edges)
 
     def _posture_gains(self, name: str) -> TaskGains | PrescribedGains:
         p = self.parameters
@@ -251,175 +293,206 @@ class WholeBodyQp:
             return p.spine
         return p.arms
 
-    @staticmethod
-    def frames(reference: WalkingReference) -> list[str]:
-        """The bodies whose frames a program for this reference needs."""
-        names = ["Pelvis", "Ribs"]
-        for side in SIDES:
-            in_the_air = reference.foot(side).task is FootTask.SWING
-            names += [f"{side}Leg_Ankle"] if in_the_air else FOOT_BODIES[side]
-        return names
-
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None where the solver finds none."""
-        program, qdd0, B, points = self.program(body, reference, posture)
-        x = program.solution()
-        if x is None:
+        program, prescribed, points = self.program(body, reference, posture)
+        solution = program.solution()
+        if solution is None:
             return None
-        m = self._free.size
-        qdd = qdd0.copy()
-        qdd[self._free] = x[:m]
-        edge_forces = np.maximum(x[m:], 0.0)
-        torque = (body.M @ qdd + body.h - B.T @ edge_forces)[6:]
-        forces = np.zeros((sum(len(sole.places) for sole in self._soles), 3))
-        forces[points] = edge_forces.reshape(-1, 4) @ self._edges.d_W
-        return WholeBodySolution(qdd, forces, np.clip(torque, -self.limits, self.limits))
+        acceleration, edge_forces = np.concatenate((solution[0], prescribed)), np.maximum(solution[1], 0.0)
+        torque = body.M.dot(acceleration) + body.h
+        # The program's B is -J' of the edges; the prescribed joints carry no foot.
+        torque[: self._free] += program.B.dot(edge_forces)
+        forces = np.zeros((self._soles.body.size, 3))
+        forces[points] = edge_forces.reshape(-1, 4).dot(self._edges.d_W)
+        return WholeBodySolution(acceleration, forces, np.minimum(np.maximum(torque[6:], -self.limits), self.limits))
 
     def program(
         self, body: Dynamics, reference: WalkingReference, posture: Posture
-    ) -> tuple[QuadraticProgram, Array, Array, Indices]:
-        """The program, and what makes torques of its solution.
+    ) -> tuple[QuadraticProgram, Array, Indices]:
+        """The program, whose unknowns are the accelerations of base, legs and back and the forces along the edges.
 
         Returns:
-            the program; the prescribed accelerations (nv,); the Jacobian along the edges of the contact forces
-            (edges, nv); the places of the points that these edges belong to.
+            the program; the accelerations of the joints that are prescribed; the places of the points that may press,
+            four edges each.
         """
-        p = self.parameters
-        q, v = body.q[self._q], body.v[6:]
-        stiffness, damping, weight = self._posture
-        wanted = stiffness * (posture.angle - q) + damping * (posture.rate - v)
-        qdd0 = np.zeros(body.v.size)
-        qdd0[self._prescribed] = wanted[self._prescribed - 6]
+        p, m = self.parameters, self._free
+        q, v = body.q.take(self._q), body.v[6:]
+        wanted = self._stiffness * (posture.angle - q) + self._damping * (posture.rate - v)
+        wanted, prescribed = wanted[: m - 6], wanted[m - 6 :]
 
         J, a, w = self._tasks(body, reference)
-        a = a - J @ qdd0
-        J = J[:, self._free]
-        points, B, most = self._contacts(body, reference)
-
-        m, k = self._free.size, most.size
-        free_joints = self._free_joints
+        a -= J[:, m:].dot(prescribed)
+        J = J[:, :m]
         WJ = w[:, None] * J
-        H = np.zeros((m + k, m + k))
-        H[:m, :m] = J.T @ WJ
-        diagonal = np.full(m, p.effort)
-        diagonal[6:] += weight[free_joints]
-        H[np.arange(m), np.arange(m)] += diagonal
-        H[np.arange(m, m + k), np.arange(m, m + k)] = p.force
-        g = np.zeros(m + k)
-        g[:m] = -(a @ WJ)
-        g[6:m] -= weight[free_joints] * wanted[free_joints]
+        H = J.T.dot(WJ)
+        H.ravel()[:: m + 1] += self._diagonal
+        g = -a.dot(WJ)
+        g[6:] -= self._weight * wanted
 
-        # The equations of motion M v' + h - B' f = tau: of the base, whose tau is 0, and of the joints.
-        motion = np.empty((m, m + k))
-        motion[:, :m] = body.M[self._free[:, None], self._free]
-        motion[:, m:] = -B[:, self._free].T
-        rest = (body.h + body.M @ qdd0)[self._free]
-        lower, upper = np.full(2 * m + k, -1e4), np.full(2 * m + k, 1e4)
-        slowing = p.range_damping * v
-        lower[6:m] = np.clip(p.range_stiffness * (self.lower - q) - slowing, -1e4, 1e3)[free_joints]
-        upper[6:m] = np.clip(p.range_stiffness * (self.upper - q) - slowing, -1e3, 1e4)[free_joints]
-        lower[m : m + k], upper[m : m + k] = 0.0, most
-        torque_limits = np.concatenate((np.zeros(6), self.limits[free_joints]))
-        lower[m + k :], upper[m + k :] = -torque_limits - rest, torque_limits - rest
-        program = QuadraticProgram(H, g, motion, lower, upper)
-        return program, qdd0, B, points
+        # The equations of motion M v' + h - J' f = tau: of the base, whose tau is 0, and of the joints.
+        points, J_edges, most = self._contacts(body, reference)
+        k = most.size
+        bounds = np.empty((2, k + 2 * m))
+        bounds[:, :k] = 0.0
+        bounds[1, :k] = most
+        bounds[:, k : k + m] = FREE
+        towards_ends = p.range_stiffness * (self._range - q[: m - 6]) - p.range_damping * v[: m - 6]
+        bounds[:, k + 6 : k + m] = np.minimum(np.maximum(towards_ends, LEAST), MOST)
+        bounds[:, k + m :] = self._torque_range - (body.h[:m] + body.M[:m, m:].dot(prescribed))
+        program = QuadraticProgram(H, g, body.M[:m, :m], -J_edges[:, :m].T, *bounds)
+        return program, prescribed, points
 
-    # Tasks: rows of J v' = a with weight w.
+    # Tasks: rows of J v' + bias = a with weight w.
 
     def _tasks(self, body: Dynamics, reference: WalkingReference) -> tuple[Array, Array, Array]:
-        p = self.parameters
-        Js: list[Array] = []
-        accelerations: list[Array] = []
-        weights: list[float] = []
-
-        def add(J: Array, acceleration: Array, weight: float) -> None:
-            Js.append(J)
-            accelerations.append(acceleration)
-            weights.extend([weight] * len(J))
-
+        """J, a - bias and w."""
+        p, tasks = self.parameters, _Tasks(body)
+        x, y, z = body.com.tolist()
         height, rate, lift = reference.com_height
-        c = complex(body.com[0], body.com[1])
-        over_ground = com_acceleration(c, reference.zmp, body.com[2], lift)
-        up = (
-            lift
-            + p.com_height.stiffness * (height - body.com[2])
-            + p.com_height.damping * (rate - body.com_velocity[2])
-        )
-        add(body.com_J[:2], np.array((over_ground.real, over_ground.imag)) - body.com_bias[:2], p.com_weight)
-        add(body.com_J[2:], np.array((up,)) - body.com_bias[2:], p.com_height.weight)
-        for name, yaw, gains in (("Pelvis", reference.pelvis_yaw, p.pelvis), ("Ribs", reference.chest_yaw, p.chest)):
-            frame = body.frames[name]
-            error = _rotation_error(_rotation(yaw, 0.0), frame.R_WB)
-            wanted = gains.stiffness * error - gains.damping * frame.V_WB[:3]
-            add(frame.J[:3], wanted - frame.bias[:3], gains.weight)
+        over_ground = com_acceleration(complex(x, y), reference.zmp, z, lift)
+        gains, com = p.com_height, 6 * len(body.bodies)
+        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - tasks.velocity[-1])
+        tasks.add((com, com + 1), (over_ground.real, over_ground.imag), p.com_weight)
+        tasks.add((com + 2,), (up,), gains.weight)
+        tasks.turn(self._place["Pelvis"], reference.pelvis_yaw, p.pelvis)
+        tasks.turn(self._place["Ribs"], reference.chest_yaw, p.chest)
         for side in SIDES:
-            foot = reference.foot(side)
-            ankle = body.frames[f"{side}Leg_Ankle"]
+            foot, ankle = reference.foot(side), self._place[f"{side}Leg_Ankle"]
             if foot.task is FootTask.SWING:
-                self._add_swing(add, foot, ankle)
+                self._swing(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_OFF:
-                toes = body.frames[f"{side}Leg_FootToes"]
-                add(toes.J, -p.stance.damping * toes.V_WB - toes.bias, p.stance.weight)
-                axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
-                angle, rate, acceleration = foot.pitch
-                error_y = axis @ _rotation_error(_rotation(foot.yaw, angle), ankle.R_WB)
-                wanted_y = (
-                    acceleration + p.heel_off.stiffness * error_y + p.heel_off.damping * (rate - axis @ ankle.V_WB[:3])
-                )
-                add(axis[None, :] @ ankle.J[:3], np.array((wanted_y - axis @ ankle.bias[:3],)), p.heel_off.weight)
+                self._stand(tasks, self._place[f"{side}Leg_FootToes"], 0.0)
+                self._raise_heel(tasks, foot, ankle)
             elif foot.task is FootTask.HEEL_STRIKE:
-                heel, J, velocity, bias = ankle.point(self._heel[side])
-                add(J, p.stance.damping * (self._sinking(heel[2]) - velocity) - bias, p.stance.weight)
-                error = _rotation_error(_rotation(foot.yaw, 0.0), ankle.R_WB)
-                wanted = p.heel_strike.stiffness * error - p.heel_strike.damping * ankle.V_WB[:3]
-                add(ankle.J[:3], wanted - ankle.bias[:3], p.heel_strike.weight)
+                heel, J, velocity, bias = body.frame(f"{side}Leg_Ankle").point(self._heel[side])
+                goal = np.array((0.0, 0.0, self._sinking(heel[2])))
+                tasks.add_other(J, bias, p.stance.damping * (goal - velocity), p.stance.weight)
+                tasks.turn(ankle, foot.yaw, p.heel_strike)
             else:
-                heel = ankle.p_WB + ankle.R_WB @ self._heel[side]
-                wanted = np.concatenate((np.zeros(3), self._sinking(heel[2]))) - ankle.V_WB
-                add(ankle.J, p.stance.damping * wanted - ankle.bias, p.stance.weight)
-        return np.vstack(Js), np.concatenate(accelerations), np.array(weights)
+                up_B, (x, y, z) = tasks.X_WB[ankle][2], self._heel[side]
+                heel_height = up_B[0] * x + up_B[1] * y + up_B[2] * z + up_B[3]
+                self._stand(tasks, ankle, self._sinking(heel_height))
+        return tasks.rows()
 
-    def _sinking(self, height: float) -> Array:
-        """Velocity of a foot that should stand: none, or down where it has not reached the ground yet."""
-        late = height > self.parameters.contact_height
-        return np.array((0.0, 0.0, -self.parameters.sinking_speed if late else 0.0))
+    def _sinking(self, height: float) -> float:
+        """Upward speed of a foot that should stand: none, or down where it has not reached the ground yet."""
+        return -self.parameters.sinking_speed if height > self.parameters.contact_height else 0.0
 
-    def _add_swing(self, add: object, foot: FootReference, ankle: FrameMotion) -> None:
-        p = self.parameters
-        assert callable(add)
-        way, (z, dz, ddz), (pitch, dpitch, ddpitch) = foot.position, foot.height, foot.pitch
-        position = np.array((way.position.real, way.position.imag, z))
-        velocity = np.array((way.velocity.real, way.velocity.imag, dz))
-        acceleration = np.array((way.acceleration.real, way.acceleration.imag, ddz))
-        gains = p.swing_position
-        wanted = acceleration + gains.stiffness * (position - ankle.p_WB) + gains.damping * (velocity - ankle.V_WB[3:])
-        over_ground = math.hypot(wanted[0], wanted[1])
-        if over_ground > p.swing_acceleration_limit:
-            wanted[:2] *= p.swing_acceleration_limit / over_ground
-        add(ankle.J[3:], wanted - ankle.bias[3:], gains.weight)
-        axis = np.array((-math.sin(foot.yaw), math.cos(foot.yaw), 0.0))
-        gains = p.swing_rotation
-        error = _rotation_error(_rotation(foot.yaw, pitch), ankle.R_WB)
-        wanted = ddpitch * axis + gains.stiffness * error + gains.damping * (dpitch * axis - ankle.V_WB[:3])
-        add(ankle.J[:3], wanted - ankle.bias[:3], gains.weight)
+    def _stand(self, tasks: _Tasks, place: int, upward: float) -> None:
+        """A body of a foot does not move but for an upward speed [m/s]."""
+        gains = self.parameters.stance
+        wx, wy, wz, vx, vy, vz = tasks.velocity[6 * place : 6 * place + 6]
+        wanted = [gains.damping * u for u in (-wx, -wy, -wz, -vx, -vy, upward - vz)]
+        tasks.add(range(6 * place, 6 * place + 6), wanted, gains.weight)
+
+    def _raise_heel(self, tasks: _Tasks, foot: FootReference, ankle: int) -> None:
+        """A foot pitches about its own axis; its toes stand."""
+        x, y = -math.sin(foot.yaw), math.cos(foot.yaw)
+        angle, rate, acceleration = foot.pitch
+        (error_x, error_y, _), (wx, wy, _) = tasks.rotation_error(ankle, foot.yaw, angle), tasks.turning(ankle)
+        gains = self.parameters.heel_off
+        wanted = acceleration + gains.stiffness * (x * error_x + y * error_y)
+        wanted += gains.damping * (rate - (x * wx + y * wy))
+        axis, J, bias = np.array((x, y)), *tasks.motion(slice(6 * ankle, 6 * ankle + 2))
+        tasks.add_other(axis.dot(J)[None], (axis.dot(bias),), (wanted,), gains.weight)
+
+    def _swing(self, tasks: _Tasks, foot: FootReference, ankle: int) -> None:
+        p, gains = self.parameters, self.parameters.swing_position
+        way, (height, rate, lift) = foot.position, foot.height
+        x, y, z = (row[3] for row in tasks.X_WB[ankle])
+        vx, vy, vz = tasks.velocity[6 * ankle + 3 : 6 * ankle + 6]
+        over_ground = way.acceleration + gains.stiffness * (way.position - complex(x, y))
+        over_ground += gains.damping * (way.velocity - complex(vx, vy))
+        if abs(over_ground) > p.swing_acceleration_limit:
+            over_ground *= p.swing_acceleration_limit / abs(over_ground)
+        up = lift + gains.stiffness * (height - z) + gains.damping * (rate - vz)
+        tasks.add(range(6 * ankle + 3, 6 * ankle + 6), (over_ground.real, over_ground.imag, up), gains.weight)
+        tasks.turn(ankle, foot.yaw, p.swing_rotation, *foot.pitch)
 
     def _contacts(self, body: Dynamics, reference: WalkingReference) -> tuple[Indices, Array, Array]:
-        """Places of the points that may press (k,), their force per edge as generalised force (4 k, nv), its bound."""
-        p = self.parameters
-        places, blocks, most = [], [], []
-        for sole in self._soles:
-            foot = reference.foot(sole.side)
-            if foot.load <= 0.0 or (foot.task is FootTask.HEEL_OFF and sole.is_heel):
-                continue
-            frame = body.frames[sole.body]
-            low = np.flatnonzero(frame.p_WB[2] + sole.points @ frame.R_WB[2] < p.contact_height)
-            if low.size:
-                places.append(sole.places[low])
-                blocks.append(frame.along(sole.points[low], self._edges))
-                most.append(np.full(4 * low.size, p.largest_force * foot.load))
-        if not places:
-            return np.zeros(0, dtype=int), np.zeros((0, body.v.size)), np.zeros(0)
-        return np.concatenate(places), np.concatenate(blocks), np.concatenate(most)
+        """Places of the points that may press (k,), Jacobian of their edges (4 k, nv), the bound of their forces."""
+        p, soles = self.parameters, self._soles
+        load = np.array([self._load(reference.foot(side), is_heel) for side, is_heel in SOLES]).take(soles.sole)
+        X_WB = body.X_WB.take(soles.body, axis=0)
+        p_BoP_W = np.matmul(X_WB[:, :, :3], soles.point)[:, :, 0]
+        is_low = X_WB[:, 2, 3] + p_BoP_W[:, 2] < p.contact_height
+        (points,) = (is_low & (load > 0.0)).nonzero()
+        J_edges = body.along(soles.body.take(points), p_BoP_W.take(points, axis=0), self._edges)
+        return points, J_edges, (p.largest_force / self._unit * load.take(points)).repeat(4)
+
+    @staticmethod
+    def _load(foot: FootReference, is_heel: bool) -> float:
+        """Share of its strength that a part of a foot may press with."""
+        return 0.0 if is_heel and foot.task is FootTask.HEEL_OFF else foot.load
+
+
+class _Tasks:
+    """Rows of tasks at one state of the body, gathered one after the other; most are rows of the body's own motions.
+
+    In plain numbers, for all these vectors are short:
+
+    X_WB: rotation matrix and position of each body, three rows of four.
+    velocity: as in `Dynamics`.
+    """
+
+    def __init__(self, body: Dynamics) -> None:
+        self._body = body
+        self.X_WB: list[list[list[float]]] = body.X_WB.tolist()
+        self.velocity: list[float] = body.velocity.tolist()
+        self._rows: list[int] = []
+        self._wanted: list[float] = []
+        self._weight: list[float] = []
+        self._others: list[tuple[Array, npt.ArrayLike, npt.ArrayLike, list[float]]] = []
+
+    def add(self, rows: Sequence[int], acceleration: Sequence[float], weight: float) -> None:
+        """Some of the body's motions should have these accelerations."""
+        self._rows.extend(rows)
+        self._wanted.extend(acceleration)
+        self._weight.extend([weight] * len(rows))
+
+    def add_other(self, J: Array, bias: npt.ArrayLike, acceleration: npt.ArrayLike, weight: float) -> None:
+        """J v' + bias should be this acceleration."""
+        self._others.append((J, bias, acceleration, [weight] * len(J)))
+
+    def motion(self, rows: slice) -> tuple[Array, Array]:
+        """J and bias of some of the body's motions."""
+        return self._body.J[rows], self._body.bias[rows]
+
+    def turning(self, place: int) -> list[float]:
+        """Angular velocity of a body [rad/s]."""
+        return self.velocity[6 * place : 6 * place + 3]
+
+    def rotation_error(self, place: int, yaw: float, pitch: float) -> Vector:
+        """Rotation vector that turns a body into Rz(yaw) Ry(pitch)."""
+        return rotation_error(yaw, pitch, self.X_WB[place])
+
+    def turn(
+        self,
+        place: int,
+        yaw: float,
+        gains: TaskGains,
+        pitch: float = 0.0,
+        pitch_rate: float = 0.0,
+        pitch_acceleration: float = 0.0,
+    ) -> None:
+        """A body should be turned by a yaw that stays and a pitch that changes."""
+        axis = (-math.sin(yaw), math.cos(yaw), 0.0)
+        wanted = [
+            pitch_acceleration * n + gains.stiffness * e + gains.damping * (pitch_rate * n - w)
+            for n, e, w in zip(axis, self.rotation_error(place, yaw, pitch), self.turning(place), strict=True)
+        ]
+        self.add(range(6 * place, 6 * place + 3), wanted, gains.weight)
+
+    def rows(self) -> tuple[Array, Array, Array]:
+        """All rows: J, what J v' should be, weight."""
+        rows = np.array(self._rows)
+        J, wanted = self._body.J.take(rows, axis=0), self._wanted - self._body.bias.take(rows)
+        if not self._others:
+            return J, wanted, np.array(self._weight)
+        other_J, bias, acceleration, weight = zip(*self._others, strict=True)
+        wanted = np.concatenate((wanted, np.concatenate(acceleration) - np.concatenate(bias)))
+        return np.concatenate((J, *other_J)), wanted, np.concatenate((self._weight, *weight))
 
 
 def is_foot_posture(joint_name: str) -> bool:
@@ -427,19 +500,23 @@ def is_foot_posture(joint_name: str) -> bool:
     return any(word in joint_name for word in ("AnkleTwist", "FootMiddle", "FootToes"))
 
 
-def _rotation(yaw: float, pitch: float) -> Array:
-    """Rz(yaw) Ry(pitch)."""
-    u = cmath.exp(1j * yaw)
-    c, s, cp, sp = u.real, u.imag, math.cos(pitch), math.sin(pitch)
-    return np.array(((c * cp, -s, c * sp), (s * cp, c, s * sp), (-sp, 0.0, cp)))
+Vector = tuple[float, float, float]
 
 
-def _rotation_error(wanted: Array, actual: Array) -> Array:
-    """Rotation vector in W that turns `actual` into `wanted`; exact up to a right angle, then bounded."""
-    R = wanted @ actual.T
-    sine = 0.5 * np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
-    length = math.sqrt(sine @ sine)
-    if length < 1e-9:
-        return sine
-    error: Array = sine * (math.atan2(length, 0.5 * (R.trace() - 1.0)) / length)
-    return error
+def rotation_error(yaw: float, pitch: float, X_WB: Sequence[Sequence[float]]) -> Vector:
+    """Rotation vector in W that turns R_WB, the first three columns, into Rz(yaw) Ry(pitch).
+
+    Exact up to a right angle, then bounded.
+    """
+    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    wanted = ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp))
+    # The cross products of actual and wanted axes add up to twice sine times axis, the dot products to the trace.
+    x = y = z = trace = 0.0
+    for (ax, ay, az), (wx, wy, wz) in zip(zip(*X_WB, strict=True), wanted, strict=False):
+        x += ay * wz - az * wy
+        y += az * wx - ax * wz
+        z += ax * wy - ay * wx
+        trace += ax * wx + ay * wy + az * wz
+    length = math.hypot(x, y, z)
+    scale = math.atan2(length, trace - 1.0) / length if length > 2e-9 else 0.5
+    return scale * x, scale * y, scale * z

@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body import SIDES
 from humanwalk.body.plant import kinematics_plant
@@ -16,6 +18,7 @@ from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
 from humanwalk.systems.gait_planner import GaitPlanner
+from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
 from humanwalk.systems.whole_body_controller import WholeBodyController
@@ -30,7 +33,8 @@ TASK_GAINS = 3
 def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes, body_observer,
+    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, held_actuation (with the
+    semi-implicit law), pushes (a PushSource where the scenario has any, or zero), body_observer,
     foot_force_observer, or foot_contact with `contact: asperity`.
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
@@ -79,7 +83,6 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period),
     )
     bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
-    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
     feet = add_foot_contact(builder, scenario, human)
 
@@ -94,10 +97,21 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(controller.get_sample_time_output_port(), bank.get_sample_time_input_port())
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
-    if law == "implicit":
+    if law == "semi_implicit":
+        # The bank's own law, without Python; the bank is asked for what it tells of it.
+        held = builder.AddNamedSystem(
+            "held_actuation", HeldActuation(human.joints, human.kp, human.kd, human.effort_limits)
+        )
+        builder.Connect(controller.get_torque_output_port(), held.get_feedforward_input_port())
+        builder.Connect(controller.get_desired_state_output_port(), held.get_desired_state_input_port())
+        builder.Connect(controller.get_sample_time_output_port(), held.get_sample_time_input_port())
+        builder.Connect(plant.get_state_output_port(), held.get_state_input_port())
+        builder.Connect(held.get_actuation_output_port(), plant.get_actuation_input_port())
+    else:
+        builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
         builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human.instance))
-    connect_spatial_forces(builder, human, (*feet.spatial_forces, pushes.get_spatial_forces_output_port()))
+    push, spatial_forces = _add_pushes(builder, scenario, plant)
+    connect_spatial_forces(builder, human, (*feet.spatial_forces, *spatial_forces))
 
     for port, name in (
         (plant.get_state_output_port(), "state"),
@@ -119,9 +133,23 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         (command.get_command_output_port(), "command"),
         (planner.get_balance_output_port(), "balance"),
         (controller.get_status_output_port(), "qp_status"),
-        (pushes.get_force_output_port(), "push"),
+        (push, "push"),
     ):
         builder.ExportOutput(port, name)
     diagram = builder.Build()
     diagram.set_name("walker")
     return diagram
+
+
+def _add_pushes(
+    builder: DiagramBuilder, scenario: Scenario, plant: MultibodyPlant
+) -> tuple[OutputPort, tuple[OutputPort, ...]]:
+    """Add what pushes the body; returns the ports of the pushes' force and of the forces for the plant.
+
+    Where a scenario has no pushes there is no source of any: the plant would ask it in every step.
+    """
+    if not scenario.pushes.any:
+        none = builder.AddNamedSystem("pushes", ConstantVectorSource(np.zeros(3)))
+        return none.get_output_port(), ()
+    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
+    return pushes.get_force_output_port(), (pushes.get_spatial_forces_output_port(),)

@@ -89,6 +89,8 @@ class CubicHermite(Spline):
         segments = len(knots) - 1
         curve = CubicHermiteSpline(np.arange(segments + 1.0), knots, slopes)
         super().__init__(curve, segments, points)
+        self.coefficients: FloatArray = np.ascontiguousarray(curve.c[::-1].transpose(1, 2, 0))
+        """Of the powers 0 to 3 of u within each segment, for each coordinate; shape (segments, d, 4)."""
 
 
 class _UniformBSpline(Spline):

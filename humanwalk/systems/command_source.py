@@ -1,12 +1,14 @@
-"""LeafSystem: what the walker is asked for."""
+"""Diagram: what the walker is asked for."""
 
-from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.primitives import TrajectorySource
+from pydrake.trajectories import PiecewisePolynomial
 
 from humanwalk.control.command import CommandParameters, CommandProfile
 
 
-class CommandSource(LeafSystem):
-    """The scenario's command over time.
+class CommandSource(Diagram):
+    """The scenario's command over time, which a TrajectorySource reads out: no Python while it is simulated.
 
     Outputs:
         command: (3) forward and sideways speed along the walker's heading [m/s], turn rate [rad/s].
@@ -15,12 +17,14 @@ class CommandSource(LeafSystem):
     def __init__(self, parameters: CommandParameters) -> None:
         super().__init__()
         self._profile = CommandProfile(parameters)
-        self._output = self.DeclareVectorOutputPort(
-            "command", 3, self._calc, prerequisites_of_calc={self.time_ticket()}
+        knots = self._profile.knots
+        samples = list(zip(*(self.command(time) for time in knots), strict=True))
+        builder = DiagramBuilder()
+        profile = builder.AddNamedSystem(
+            "profile", TrajectorySource(PiecewisePolynomial.FirstOrderHold(knots, samples))
         )
-
-    def _calc(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self.command(context.get_time()))
+        builder.ExportOutput(profile.get_output_port(), "command")
+        builder.BuildInto(self)
 
     def command(self, time: float) -> list[float]:
         """The output at a time [s]."""
@@ -29,4 +33,4 @@ class CommandSource(LeafSystem):
 
     def get_command_output_port(self) -> OutputPort:
         """Output command."""
-        return self._output
+        return self.get_output_port()

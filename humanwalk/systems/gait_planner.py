@@ -26,6 +26,9 @@ from humanwalk.control.walking_reference import (
     other,
 )
 
+UNKNOWN: dict[Side, float] = dict.fromkeys(SIDES, 0.0)
+"""Forces of the feet that nobody asks for: to sum up the contacts costs as much as the planner itself."""
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -72,12 +75,12 @@ class GaitPlanner(LeafSystem):
         self._dynamics = BodyDynamics(plant)
         standing = plant.CreateDefaultContext()
         hip_height, ankle_height = (
-            plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2]
+            float(plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2])
             for body in ("Femur_Thigh", "Ankle")
         )
         self._planner = StepPlanner(
             parameters,
-            standing_com_height=plant.CalcCenterOfMassPositionInWorld(standing)[2],
+            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(standing)[2]),
             ankle_height=ankle_height,
             leg_length=hip_height - ankle_height,
             first_swing=first_swing,
@@ -100,19 +103,19 @@ class GaitPlanner(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(period, 0.0, self._plan)
 
     def _start(self, context: Context, state: State) -> EventStatus:
-        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), dict.fromkeys(SIDES, 0.0))
+        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), UNKNOWN)
         return self._remember(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
-        forces = self._foot_forces.Eval(context)
-        body = self._dynamics.body_state(
-            self._state.Eval(context),
-            context.get_time(),
-            {side: float(forces[8 * place + 2]) for place, side in enumerate(SIDES)},
-        )
         remembered = context.get_abstract_state(int(self._memory)).get_value().state
         assert remembered is not None
-        return self._remember(state, *self._planner.update(remembered, body, Command(*self._command.Eval(context))))
+        forces = UNKNOWN
+        if self._planner.listens(remembered):
+            felt = self._foot_forces.Eval(context)
+            forces = {side: float(felt[8 * place + 2]) for place, side in enumerate(SIDES)}
+        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), forces)
+        command = Command(*self._command.Eval(context).tolist())
+        return self._remember(state, *self._planner.update(remembered, body, command))
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(Plan(planned, reference))

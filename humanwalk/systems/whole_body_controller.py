@@ -61,8 +61,9 @@ class WholeBodyController(LeafSystem):
         joints = self._dynamics.joints
         self._n = n = len(joints.names)
         self._place = joints.v - 6
-        self._order = np.argsort(self._place)
-        self._index = {name: i for i, name in enumerate(self._qp.names)}
+        self._q = joints.q[np.argsort(self._place)]
+        moved = ("ArmShoulderMotion", "ArmElbowMotion", "LegFootToesMotion")
+        self._moved = [[self._qp.names.index(f"{side}{joint}") for joint in moved] for side in SIDES]
         self._rest = np.array([posture.get(name, 0.0) for name in self._qp.names])
         self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
 
@@ -79,28 +80,24 @@ class WholeBodyController(LeafSystem):
 
     def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context).reference
-        state = self._state.Eval(context)
-        body = self._dynamics.at(state, self._qp.frames(reference))
-        q = self._dynamics.joints.positions(state)[self._order]
-        v = body.v[6:]
+        body = self._dynamics.at(self._state.Eval(context))
+        q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         solution = self._qp.solve(body, reference, posture)
 
-        torque = context.get_discrete_state(self._groups[0]).value()[self._order]
-        _, failures, in_a_row = context.get_discrete_state(self._groups[3]).value()
+        _, failures, in_a_row = context.get_discrete_state(self._groups[3]).value().tolist()
         if solution is not None:
-            torque, in_a_row = solution.torque, 0
+            torque, in_a_row = solution.torque.take(self._place), 0.0
             rate = v + self._period * solution.acceleration[6:]
         else:
-            failures, in_a_row = failures + 1, in_a_row + 1
+            failures, in_a_row = failures + 1.0, in_a_row + 1.0
             rate = np.zeros_like(v)
-            if in_a_row * self._period > self._hold:
-                torque = np.zeros_like(v)
-        rate = np.where(self._is_foot, posture.rate, rate)
-        angle = np.where(self._is_foot, posture.angle, q)
+            held = in_a_row * self._period <= self._hold
+            torque = context.get_discrete_state(self._groups[0]).value() if held else np.zeros_like(v)
+        desired = np.where(self._is_foot, (posture.angle, posture.rate), (q, rate))
         values = (
-            torque[self._place],
-            np.concatenate((angle[self._place], rate[self._place])),
+            torque,
+            desired.take(self._place, axis=1).ravel(),
             np.array((context.get_time(),)),
             np.array((float(solution is not None), failures, in_a_row)),
         )
@@ -110,13 +107,12 @@ class WholeBodyController(LeafSystem):
 
     def _posture(self, reference: WalkingReference) -> Posture:
         angle, rate = self._rest.copy(), np.zeros(self._n)
-        for side, (swing, swing_rate) in zip(SIDES, reference.shoulder_flexion, strict=True):
-            shoulder, elbow = self._index[f"{side}ArmShoulderMotion"], self._index[f"{side}ArmElbowMotion"]
+        feet = (reference.foot(side) for side in SIDES)
+        moves = zip(self._moved, reference.shoulder_flexion, feet, strict=True)
+        for (shoulder, elbow, toes), (swing, swing_rate), foot in moves:
             angle[shoulder] += swing
             rate[shoulder] = swing_rate
             angle[elbow] += 0.5 * max(swing, 0.0)
-            foot = reference.foot(side)
-            toes = self._index[f"{side}LegFootToesMotion"]
             angle[toes], rate[toes] = foot.toes
         return Posture(angle, rate)
 

@@ -201,3 +201,18 @@ def test_a_foot_leaves_flatter_from_a_short_step_than_from_an_ordinary_one():
     assert shortest < 0.5 * longest
     assert pitches[shortest] < 0.6 * pitches[longest]
     assert max(pitches.values()) <= PARAMETERS.rockers.pitch
+
+
+def test_where_it_does_not_listen_the_feets_forces_do_not_matter():
+    """The system sums up the contacts only where it listens."""
+    plan, command = planner(), walk_at(1.0)
+    deaf = 0
+    for (_, state, _, _), (time, _, _, body) in pairwise(pendulum_walk(plan, command, 4.0)):
+        if not plan.listens(state):
+            unloaded, loaded = (
+                replace(body, right=replace(body.right, force=force), left=replace(body.left, force=force))
+                for force in (0.0, 1000.0)
+            )
+            assert plan.update(state, unloaded, command(time)) == plan.update(state, loaded, command(time))
+            deaf += 1
+    assert deaf > 300

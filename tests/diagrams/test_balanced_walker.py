@@ -7,6 +7,7 @@ from pydrake.systems.analysis import Simulator
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, parse_scenario
+from humanwalk.systems.push_source import PushSource
 
 PORTS = [
     *("state", "query_object", "contact_results", "torque", "saturated", "net_actuation", "feedforward", "sample"),
@@ -28,7 +29,18 @@ def test_nothing_but_the_ground_acts_on_it():
     simulator = Simulator(diagram)
     simulator.Initialize()
     context = plant.GetMyContextFromRoot(simulator.get_context())
-    assert plant.get_applied_spatial_force_input_port().Eval(context) == []
+    assert not plant.get_applied_spatial_force_input_port().HasValue(context)
+
+
+def test_who_is_to_be_pushed_has_a_source_of_pushes():
+    push = "[{time: 0.0, duration: 0.1, impulse: 10.0}]"
+    diagram = make_diagram(load_scenario("walk", {"pushes.pushes": push}))
+    plant, source = diagram.GetSubsystemByName("plant"), diagram.GetSubsystemByName("pushes")
+    assert isinstance(source, PushSource)
+    context = diagram.CreateDefaultContext()
+    (force,) = plant.get_applied_spatial_force_input_port().Eval(plant.GetMyContextFromRoot(context))
+    assert force.F_Bq_W.translational() == pytest.approx([100.0, 0.0, 0.0])
+    assert diagram.GetOutputPort("push").Eval(context) == pytest.approx([100.0, 0.0, 0.0])
 
 
 @pytest.mark.slow
