@@ -107,8 +107,8 @@ class PathFollowing:
     """Speed along the path per distance behind the commanded place: so the mean speed is the commanded one."""
 
     behind: float = quantity(0.25, "s", 0.0, 1.0)
-    """So far behind the commanded place is the walker's own: a step keeps the speed that was commanded as it began, half
-    a step ago in the mean. Who ran after that too would overshoot where the command stops."""
+    """The walker's own place is so far behind the commanded one: a step keeps the speed that was commanded as it began,
+    half a step ago in the mean. Who ran after that too would overshoot where the command stops."""
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
     """Greatest such speed."""

@@ -48,7 +48,8 @@ class StepPlacement:
     """A foot that comes from behind the other one passes it at this distance."""
 
     reach: float = quantity(0.45, "m", 0.1, 1.0)
-    """Greatest distance of a foothold before or behind the centre of mass as it will be then."""
+    """Greatest distance of a foothold before or behind the centre of mass as it will be then: a leg that is stretched
+    farther hangs in the air, however soon its time is over."""
 
     smoothing: float = quantity(0.02, "s", 0.0, 0.2)
     """Time constant of the foothold."""
@@ -107,8 +108,13 @@ class StepPlacement:
         foothold = complex(x, outward * clip(width, narrowest, self.widest))
         return foothold, beyond
 
-    def before_body(self, foothold: complex, com: complex) -> complex:
-        return complex(min(max(foothold.real, com.real - self.reach), com.real + self.reach), foothold.imag)
+    def near_body(self, foothold: complex, com: complex) -> complex:
+        """The foothold, not farther before or behind the centre of mass at touchdown than a leg that carries reaches.
+
+        Args:
+            foothold, com: along the heading, seen from the stance foot [m].
+        """
+        return complex(clip(foothold.real, com.real - self.reach, com.real + self.reach), foothold.imag)
 
 
 def foothold_gain(frequency: float, double_support: float) -> float:

@@ -342,24 +342,21 @@ class StepPlanner:
         if both:
             across = self.parameters.placement.late_lift_off(wanted, state.stance, place)
             rate += min(timing.hurry * across, timing.lift_off_limit)
-        if state.phase is Phase.SINGLE_SUPPORT and swing is not None:
-            foothold, beyond = self.parameters.placement.within_reach(wanted, state.stance, place)
+        foothold_W, highest = state.ankle(other(state.stance)), math.inf
+        if swing is not None:
+            placement, stance = self.parameters.placement, state.ankle(state.stance)
+            foothold, beyond = placement.within_reach(wanted, state.stance, place)
             rate += min(timing.hurry * beyond, timing.hurry_limit)
             com = carried(body.com, xi, zmp, (timing.step - state.elapsed) / rate, self.frequency)
-            com = (com - state.ankle(state.stance)) / u
-            foothold = self.parameters.placement.before_body(foothold, com)
-            swing = self._swing_on(state, swing, state.ankle(state.stance) + u * foothold, rate, command)
+            foothold = placement.near_body(foothold, (com - stance) / u)
+            swing = self._swing_on(state, swing, stance + u * foothold, rate, command)
+            foothold_W, reach = swing.foothold, (swing.foothold - com) / u
+            highest = self.parameters.height.highest_for(reach, self.leg_length, self.standing_com_height)
 
         feet: dict[Side, FootReference] = {
             state.stance: self._stance_foot(state, command, swing),
             other(state.stance): self._other_foot(state, command, swing, rate),
         }
-        foothold_W = swing.foothold if swing is not None else state.ankle(other(state.stance))
-        highest = math.inf
-        if swing is not None:
-            com = carried(body.com, xi, zmp, (timing.step - state.elapsed) / rate, self.frequency)
-            reach = (swing.foothold - com) / u
-            highest = self.parameters.height.highest_for(reach, self.leg_length, self.standing_com_height)
         next_state, height = self._height(state, command.forward, highest)
         next_state = next_state._replace(
             elapsed=state.elapsed + rate * self.period,
