@@ -67,7 +67,8 @@ def test_who_turns_on_the_spot_turns_with_the_command():
 def test_the_correction_is_towards_the_path_and_bounded(x, y, heading):
     path = walked(STRAIGHT, 3.0, CommandedPath.begin(0.3 + 0.1j, heading))
     away = complex(x, y) * cmath.exp(1j * heading)
-    walker = path.end.position + away
+    own = path.end.position - FOLLOWING.behind * STRAIGHT.speed * cmath.exp(1j * heading)
+    walker = own + away
     correction = FOLLOWING.correction(path, path.beside(walker, STRAIGHT), walker, STRAIGHT)
     assert correction.real * x <= 1e-9
     assert correction.imag * y <= 1e-9
@@ -75,9 +76,10 @@ def test_the_correction_is_towards_the_path_and_bounded(x, y, heading):
     assert abs(correction.imag) <= FOLLOWING.lane_speed_limit + 1e-9
 
 
-def test_who_is_on_the_path_is_left_alone():
+def test_who_is_half_a_step_behind_the_command_is_left_alone():
     path = walked(STRAIGHT, 2.0)
-    assert FOLLOWING.correction(path, path.end, path.end.position, STRAIGHT) == 0.0
+    own = path.end.position - FOLLOWING.behind * STRAIGHT.speed
+    assert FOLLOWING.correction(path, path.beside(own, STRAIGHT), own, STRAIGHT) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_path_waits_for_who_was_held_up_but_keeps_his_lane():

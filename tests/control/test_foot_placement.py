@@ -85,3 +85,12 @@ def test_only_a_foot_that_would_run_into_the_other_goes_round_it(x, width, goal,
         place, share = way_round
         assert place == complex(0.0, outward * PLACEMENT.passing)
         assert x + share * (goal - x) == pytest.approx(0.0, abs=1e-9)
+
+
+@given(st.floats(-1.5, 1.5), st.floats(-0.5, 0.5), st.floats(-0.5, 0.8))
+def test_a_foothold_is_where_a_leg_of_the_body_that_comes_there_reaches(x, y, com):
+    foothold = PLACEMENT.near_body(complex(x, y), complex(com, 0.1))
+    assert abs(foothold.real - com) <= PLACEMENT.reach + 1e-12
+    assert foothold.imag == y
+    if abs(x - com) <= PLACEMENT.reach:
+        assert foothold.real == x

@@ -203,6 +203,31 @@ def test_a_foot_leaves_flatter_from_a_short_step_than_from_an_ordinary_one():
     assert max(pitches.values()) <= PARAMETERS.rockers.pitch
 
 
+def test_who_goes_backward_sets_and_lifts_his_feet_flat():
+    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.2, push=(4.0, -1.2 + 0j)):
+        behind = (state.ankle(other(state.stance)) - state.ankle(state.stance)).real < 0.0
+        if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and not behind:
+            assert reference.foot(other(state.stance)).task is FootTask.FLAT
+            break
+    else:
+        pytest.fail("no step backward")
+
+
+def test_a_foot_whose_time_is_over_in_the_air_stands_where_it_comes_down():
+    plan, command = planner(), walk_at(0.5)
+    walked = pendulum_walk(plan, command, 5.0)
+    time, state, _, body = next(w for w in walked if w[0] > 3.0 and w[1].phase is Phase.DOUBLE_SUPPORT)
+    drifted = body.foot(state.stance).position + 0.05j
+
+    def stance_after(force):
+        feet = {state.stance.lower(): foot(drifted, force)}
+        later, _ = plan.update(state, replace(body, **feet), command(time))
+        return later.ankle(state.stance)
+
+    assert stance_after(0.0) == drifted
+    assert stance_after(500.0) == state.ankle(state.stance)
+
+
 def test_where_it_does_not_listen_the_feets_forces_do_not_matter():
     """The system sums up the contacts only where it listens."""
     plan, command = planner(), walk_at(1.0)

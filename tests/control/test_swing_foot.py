@@ -93,6 +93,14 @@ def test_it_clears_the_ground_in_between(profile):
     assert all(profile.at(s / 100).height > 0.068 for s in range(95))
 
 
+@given(st.floats(0.0, 0.1))
+def test_a_foot_that_leaves_flat_is_lifted_over_what_it_could_scuff(raised):
+    parameters, ground = SwingParameters(), 0.068
+    profile = SwingProfile.from_lift_off(ground + raised, 0.0, 0.0, 0.0, ground, 0.25, 0.42, parameters)
+    highest = max(profile.at(s / 100).height for s in range(100)) - ground
+    assert highest >= max(parameters.clearance, raised + parameters.lift) - 1e-9
+
+
 @given(st.floats(0.01, 0.99))
 def test_rates_are_derivatives(progress):
     profile = SwingProfile.from_lift_off(0.12, 0.3, 0.6, -2.0, 0.068, 0.25, 0.42, SwingParameters())
