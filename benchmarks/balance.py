@@ -60,6 +60,8 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
     time, x, y = (signals[name].to_numpy() for name in (TIME, "com.x_m", "com.y_m"))
     steady = time >= steady_from(scenario)
     several = steady.sum() > 1
+    landings = np.sort(np.concatenate([touchdowns(signals, side) for side in SIDES]))
+    steps = np.diff(landings[landings >= steady_from(scenario)])
     row = {
         "run": label,
         "end": outcome.end,
@@ -69,7 +71,8 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
         "final_y_m": float(y[-1]),
         "off_path_m": off_path(scenario, x[::10], y[::10]),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass),
-        "steps": sum(len(touchdowns(signals, side)) for side in SIDES),
+        "steps": len(landings),
+        "step_s": float(steps.mean()) if steps.size else None,
         "qp_failures": int(signals["qp.failures"].to_numpy().max()),
         "realtime_factor": float(time[-1]) / outcome.wall_time,
     }

@@ -215,8 +215,10 @@ def balance_seeds() -> str:
 
 
 def balance_invariance() -> str:
-    rows = [[row["run"], *_walked(row), str(row["steps"])] for row in load("balance_invariance")]
-    return table(["", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps"], rows)
+    rows = [
+        [row["run"], *_walked(row), str(row["steps"]), f"{row['step_s']:.3f}"] for row in load("balance_invariance")
+    ]
+    return table(["", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps", "step s"], rows)
 
 
 PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
