@@ -19,7 +19,7 @@ import piqp
 from proxsuite import proxqp
 from scipy.linalg import block_diag
 
-from humanwalk.control.whole_body_qp import QuadraticProgram
+from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 
