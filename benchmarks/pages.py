@@ -1,4 +1,4 @@
-"""Puts the tables of benchmarks/results into docs/performance.md and docs/balance.md, between their marks.
+"""Puts the tables of benchmarks/results into the pages of docs, between their marks.
 
 python benchmarks/pages.py
 """
@@ -221,11 +221,40 @@ def balance_invariance() -> str:
     return table(["", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps", "step s"], rows)
 
 
+def contact_thesis() -> str:
+    return _contact("thesis", {"with the support's": ("{:.3f} m g", "mean_with_support_weights")})
+
+
+def contact_walk() -> str:
+    return _contact("walk", {})
+
+
+def _contact(walk: str, more: dict[str, tuple[str, ...]]) -> str:
+    runs = load("contact")[walk]
+    lines = {
+        "end": ("{} at {:g} s", "end", "time_s"),
+        "speed": ("{:.3f} m/s", "mean_speed_m_s"),
+        "mean vertical ground force": ("{:.3f} m g", "mean_vertical_force_weights"),
+        **more,
+        "greatest force on a foot (at 200 Hz)": ("{:.1f} m g", "largest_vertical_force_weights"),
+        "friction use, median and 95 %": ("{:.2f}, {:.2f}", "friction_use_median", "friction_use_95_percent"),
+        "slip per step": ("{:.1f} mm", "slip_per_step_mm"),
+        "penetration, median and 95 %": ("{:.1f}, {:.1f} mm", "penetration_median_mm", "penetration_95_percent_mm"),
+        "real-time factor, by processor time": ("{:.2f}", "realtime_factor_cpu"),
+    }
+    rows = [
+        [name, *(form.format(*(run[key] for key in keys)) for run in runs.values())]
+        for name, (form, *keys) in lines.items()
+    ]
+    return table(["", *runs], rows)
+
+
 PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
 BALANCE = (balance_speeds, balance_paths, balance_pushes, balance_seeds, balance_invariance)
 PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
     DOCS / "performance.md": PERFORMANCE,
     DOCS / "balance.md": BALANCE,
+    DOCS / "contact.md": (contact_thesis, contact_walk),
 }
 
 

@@ -26,6 +26,8 @@ GALLERY, IMAGES = DOCS / "gallery", DOCS / "images"
 RUNS = Path("runs/gallery")
 
 FIGURE_DPI = 120
+STRIP_BEGIN = 6.0
+"""Of the strip of one stride [s]."""
 
 LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
 """README's moving picture: six strides of the thesis' walk are 5 m, after which the grid looks the same [s, m]."""
@@ -33,13 +35,13 @@ LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
 
 @dataclass(frozen=True)
 class Shot:
-    """One run of the gallery, in steady walking: a strip of one stride, a video of some seconds, and figures."""
+    """One run of the gallery: a strip of one stride of steady walking, or of some instants [s], a video, and figures."""
 
     scenario: str
     overrides: dict[str, str] = field(default_factory=dict)
     video: VideoParameters | None = None
     figures: tuple[str, ...] = ()
-    strip_begin: float = 6.0
+    instants: tuple[float, ...] = ()
 
 
 CLIP = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.0)
@@ -48,6 +50,11 @@ SIDE = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.
 SHOTS = {
     "walk": Shot("walk", video=CLIP, figures=("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")),
     "brisk": Shot("brisk", video=SIDE, figures=("gait_cycle_angles",)),
+    "push": Shot(
+        "push",
+        video=VideoParameters(frame_rate=25.0, width=640, height=360, begin=7.5, end=11.0, view="side"),
+        instants=(7.9, 8.1, 8.2, 8.3, 8.4, 8.5, 8.8, 9.3),
+    ),
     "thesis": Shot(
         "thesis",
         video=CLIP,
@@ -74,7 +81,7 @@ def make_shot(name: str, shot: Shot, console: Console) -> None:
     """Walk a shot, and draw its strip, video and figures."""
     run = run_of(name, shot, console)
     stride = run.summary["gait"]["stride_time_s"]["right"]
-    times = [round(shot.strip_begin + share * stride, 3) for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
+    times = shot.instants or [round(STRIP_BEGIN + share * stride, 3) for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
     write_snapshot(run.path, GALLERY / f"{name}.png", times, 240, 400, "side")
     if shot.video is not None:
         record_video(run.path, GALLERY / f"{name}.mp4", shot.video)

@@ -65,7 +65,7 @@ def test_the_moving_picture_is_light_enough_for_a_first_screen():
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-@pytest.mark.parametrize("name", ["performance", "balance"])
+@pytest.mark.parametrize("name", ["performance", "balance", "contact"])
 def test_the_tables_of_a_page_are_those_of_the_results(name):
     page = DOCS / f"{name}.md"
     filled = runpy.run_path(str(DOCS.parent / "benchmarks" / "pages.py"))["filled"]
