@@ -21,6 +21,7 @@ from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
@@ -81,12 +82,15 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         reference = _add_gait(builder, scenario, human, bank, body, feet)
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
+    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
     actuation = bank.get_actuation_output_port()
-    if bank.is_linear and not scenario.follow.file:
-        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp))
-        builder.Connect(bank.get_driving_output_port(), law.get_driving_input_port())
-        builder.Connect(bank.get_driving_times_output_port(), law.get_driving_times_input_port())
+    if bank.is_linear and reference.samples is not None:
+        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp, human.kd, scenario.simulation.control_period))
+        builder.Connect(reference.samples.get_previous_state_output_port(), law.get_previous_state_input_port())
+        builder.Connect(reference.samples.get_previous_time_output_port(), law.get_previous_time_input_port())
+        builder.Connect(reference.samples.get_desired_state_output_port(), law.get_desired_state_input_port())
         builder.Connect(plant.get_state_output_port(), law.get_state_input_port())
+        builder.ConnectInput("feedforward", law.get_feedforward_input_port())
         actuation = law.get_actuation_output_port()
     builder.Connect(actuation, plant.get_actuation_input_port())
     if scenario.actuators.law == "implicit":
@@ -107,7 +111,6 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
         builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
 
-    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
     for port, name in (
         (plant.get_state_output_port(), "state"),
         (human.scene_graph.get_query_output_port(), "query_object"),
@@ -131,10 +134,11 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
 
 @dataclass(frozen=True)
 class _Reference:
-    """Ports of what the walker is to do, beside the joints' desired state."""
+    """What the walker is to do: ports beside the joints' desired state, and what makes samples of that."""
 
     pelvis: OutputPort
     exports: dict[str, OutputPort]
+    samples: InverseKinematicsSolver | None = None
 
 
 def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
@@ -194,7 +198,7 @@ def _add_gait(
     ):
         builder.Connect(sample, taken)
         exports[name] = sample
-    return _Reference(gait.get_pelvis_reference_output_port(), exports)
+    return _Reference(gait.get_pelvis_reference_output_port(), exports, solver)
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:

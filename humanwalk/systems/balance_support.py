@@ -15,7 +15,12 @@ from pydrake.systems.primitives import (
 from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix
 
-from humanwalk.control.balance_support import BalanceSupportParameters, linear_gain, relative_quaternion, turning_stiffness
+from humanwalk.control.balance_support import (
+    BalanceSupportParameters,
+    linear_gain,
+    relative_quaternion,
+    turning_stiffness,
+)
 
 
 class BalanceSupport(Diagram):
