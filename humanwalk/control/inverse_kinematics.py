@@ -9,10 +9,10 @@ residual smaller; so a target out of reach gives the nearest pose, and says so.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from operator import mul
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -87,8 +87,7 @@ class InverseKinematicsParameters:
         return self.row_weights[:, None]
 
 
-@dataclass(frozen=True)
-class InverseKinematicsSolution:
+class InverseKinematicsSolution(NamedTuple):
     """What the iteration ended with.
 
     Attributes:
@@ -194,7 +193,7 @@ def _pose_error(X: Pose, X_desired: Pose) -> Vector6:
 
 def solve_inverse_kinematics(
     leg: LegKinematics,
-    X_PS_desired: RigidTransform,
+    X_PS_desired: RigidTransform | Pose,
     theta_guess: Array,
     parameters: InverseKinematicsParameters | None = None,
 ) -> InverseKinematicsSolution:
@@ -211,25 +210,25 @@ def solve_inverse_kinematics(
         that is within reach, so one that stalls is tried once more with those joints in the middle of their ranges.
     """
     parameters = parameters or InverseKinematicsParameters()
-    first, first_cost = _iterate(leg, X_PS_desired, theta_guess, parameters)
+    desired = _axes_and_origin(X_PS_desired) if isinstance(X_PS_desired, RigidTransform) else X_PS_desired
+    first, first_cost = _iterate(leg, desired, theta_guess, parameters)
     if first.converged:
         return first
     at_end = (first.theta <= leg.lower) | (first.theta >= leg.upper)
     restart = np.where(at_end, 0.5 * (leg.lower + leg.upper), first.theta)
-    second, second_cost = _iterate(leg, X_PS_desired, restart, parameters)
+    second, second_cost = _iterate(leg, desired, restart, parameters)
     better = second.converged or second_cost < RESTART_GAIN * first_cost
-    return replace(second if better else first, iterations=first.iterations + second.iterations)
+    return (second if better else first)._replace(iterations=first.iterations + second.iterations)
 
 
 def _iterate(
     leg: LegKinematics,
-    X_PS_desired: RigidTransform,
+    desired: Pose,
     theta_guess: Array,
     parameters: InverseKinematicsParameters,
 ) -> tuple[InverseKinematicsSolution, float]:
     """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
     weights = parameters.row_weights.tolist()
-    desired = _axes_and_origin(X_PS_desired)
 
     def at(theta: Array) -> tuple[Vector6, Vector6, float]:
         """Residual, weighted residual and its norm."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
-from humanwalk.body import SIDES
 from humanwalk.body.plant import Subject
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.control.joint_map import base_first_mass_matrix
@@ -13,7 +12,7 @@ from humanwalk.control.stability import round_down
 from humanwalk.diagrams.followed import followed_motion
 from humanwalk.diagrams.foot_contact import FootContact, add_foot_contact, connect_spatial_forces
 from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
-from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
+from humanwalk.diagrams.reference import add_walking_reference
 from humanwalk.diagrams.start import require_reachable, start_positions
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -168,11 +167,12 @@ def _add_gait(
         "phase": gait.get_phase_output_port(),
         "contact_schedule": gait.get_contact_schedule_output_port(),
     }
-    sole_targets: SoleTargets = gait
+    sole_targets = gait.get_sole_targets_output_port()
     if scenario.balance.foot_force.enabled:
-        sole_targets = level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        sole_targets = level_1.get_shifted_targets_output_port()
         exports["foot_shift"] = level_1.get_shift_output_port()
-    connect_soles(builder, sole_targets, solver)
+    builder.Connect(sole_targets, solver.get_sole_targets_input_port())
 
     posture = walking.arms.get_posture_output_port()
     if scenario.balance.upper_body.enabled:
@@ -229,9 +229,7 @@ def _add_foot_force_balance(
             scenario.simulation.control_period,
         ),
     )
-    for side in SIDES:
-        builder.Connect(gait.get_sole_pose_output_port(side), level_1.get_sole_pose_input_port(side))
-        builder.Connect(gait.get_sole_velocity_output_port(side), level_1.get_sole_velocity_input_port(side))
+    builder.Connect(gait.get_sole_targets_output_port(), level_1.get_sole_targets_input_port())
     builder.Connect(gait.get_contact_schedule_output_port(), level_1.get_contact_schedule_input_port())
     builder.Connect(feet.foot_forces, level_1.get_foot_forces_input_port())
     return level_1
