@@ -146,7 +146,7 @@ def test_velocities_are_the_limits_of_differences(gait, t):
     h = 1e-6
     now, ahead, behind = gait.target(t), gait.target(t + h), gait.target(t - h)
     for foot, after, before in zip(feet(now), feet(ahead), feet(behind), strict=True):
-        difference = (after.position - before.position) / (2 * h)
+        difference = np.subtract(after.position, before.position) / (2 * h)
         scale = 1.0 + np.linalg.norm(foot.velocity)
         np.testing.assert_allclose(foot.velocity, difference, rtol=0, atol=2e-2 * scale)
         rate = (after.height - before.height) / (2 * h)
@@ -186,8 +186,8 @@ def test_the_other_leg_first_is_the_mirror_image():
     right, left = (WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(), side) for side in ("Right", "Left"))
     for t in TIMES:
         a, b = right.target(t), left.target(t)
-        np.testing.assert_array_equal(a.right.position * [1, -1, 1], b.left.position)
-        np.testing.assert_array_equal(a.left.position * [1, -1, 1], b.right.position)
+        np.testing.assert_array_equal(np.multiply(a.right.position, [1, -1, 1]), b.left.position)
+        np.testing.assert_array_equal(np.multiply(a.left.position, [1, -1, 1]), b.right.position)
 
 
 def test_standing_for_ever_with_speed_zero():
