@@ -275,14 +275,17 @@ def _newton_step(leg: LegKinematics, theta: Angles, J: Array, error: Array, damp
     def step_of(free: Indices | slice) -> Array:
         Jf = J[:, free]
         square = Jf.dot(Jf.T)
-        damped = _inverse(square + damping * damping * _IDENTITY, WELL_CONDITIONED)
-        plain = _inverse(square, WELL_CONDITIONED) if pull else damped
-        if damped is not None and plain is not None:
-            wanted: Array = -damped.dot(error)
-            if not pull:
-                return np.asarray(wanted.dot(Jf))
+        damped = square + damping * damping * _IDENTITY
+        inverse = _inverse(square if pull else damped, WELL_CONDITIONED)
+        step: Array
+        if inverse is not None and not pull:
+            step = -inverse.dot(error).dot(Jf)
+            return step
+        if inverse is not None:
+            # What is damped is no nearer to singular.
+            *_, wanted, _ = dgesv(damped, error)
             back = pull * np.array(theta)[free]
-            step: Array = (wanted + plain.dot(Jf.dot(back))).dot(Jf) - back
+            step = (inverse.dot(Jf.dot(back)) - wanted).dot(Jf) - back
             return step
         U, s, Vt, _ = dgesdd(Jf)
         # The tiny constant keeps a posture that is exactly singular from dividing by zero.
