@@ -8,7 +8,7 @@ from pydrake.geometry import Meshcat, MeshcatParams, MeshcatVisualizer
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from humanwalk.body import SIDES, human
+from humanwalk.body import human
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
@@ -40,9 +40,7 @@ def main(duration: float = 3.0) -> float:
     bank = builder.AddSystem(PdActuatorBank(plant, body.kp, body.kd))
     support = builder.AddSystem(BalanceSupport(plant, BalanceSupportParameters()))
 
-    for side in SIDES:
-        builder.Connect(source.get_sole_pose_output_port(side), solver.get_sole_pose_input_port(side))
-        builder.Connect(source.get_sole_velocity_output_port(side), solver.get_sole_velocity_input_port(side))
+    builder.Connect(source.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
     builder.Connect(solver.get_desired_state_output_port(), bank.get_desired_state_input_port())
     builder.Connect(solver.get_sample_time_output_port(), bank.get_sample_time_input_port())
     builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(body.instance))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -60,7 +61,7 @@ class BalanceSupportParameters:
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force [torque; force] on the pelvis at Po, in W, shape (6,) [N m, N].
 
-    Its two parts that are not linear take Drake's symbolic expressions, too.
+    Its part that is no product takes Drake's symbolic expressions, too.
 
     Args:
         q_WP: pose of the pelvis as Drake's floating base has it, [quaternion wxyz; position [m]], shape (7,); the
@@ -70,9 +71,9 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
         parameters: stiffness and damping.
     """
     off = np.concatenate((q_WP[4:], V_WP)) - reference[4:]
-    wrench: Array = (
-        turning_wrench(relative_quaternion(q_WP[:4], reference[:4]), parameters) + linear_gain(parameters) @ off
-    )
+    turn = relative_quaternion(q_WP[:4], reference[:4])
+    wrench: Array = linear_gain(parameters) @ off
+    wrench[:3] += turning_stiffness(turn, parameters) * turn[1:]
     return wrench
 
 
@@ -97,14 +98,13 @@ def relative_quaternion(wxyz: Array, wxyz_reference: Array) -> Array:
     )
 
 
-def turning_wrench(wxyz: Array, parameters: BalanceSupportParameters) -> Array:
-    """What the support makes of a quaternion, which need not be normalised: torque the shorter way; shape (6,)."""
+def turning_stiffness(wxyz: Array, parameters: BalanceSupportParameters) -> Any:
+    """What times the x, y, z of a quaternion, which need not be normalised, is the torque the shorter way [N m]."""
     cosine, i, j, k = wxyz
     # Near no rotation at all angle / sine goes to 2 / cosine.
     sine = max_(sqrt(i * i + j * j + k * k), 1e-12)
     # A quaternion and its negative are one orientation: both are multiplied by the cosine, which makes it positive.
-    scale = -parameters.rotational_stiffness * 2.0 * atan2(sine * cosine, cosine * cosine) / sine
-    return np.array((scale * i, scale * j, scale * k, 0.0, 0.0, 0.0))
+    return -parameters.rotational_stiffness * 2.0 * atan2(sine * cosine, cosine * cosine) / sine
 
 
 def largest_support_step(

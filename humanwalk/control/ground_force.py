@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,7 @@ UNLOADED_N = 1.0
 """Vertical force below which a foot counts as unloaded: its centre of pressure would be noise."""
 
 
-@dataclass(frozen=True)
-class FootForce:
+class FootForce(NamedTuple):
     """Ground reaction on one foot, in the world frame W.
 
     Attributes:

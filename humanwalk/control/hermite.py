@@ -39,7 +39,7 @@ class HermitePiece:
         if t1 <= t0:
             t0, x0 = t1, x1
         samples = np.concatenate((x0, x1))
-        return HermitePiece(t0, t1, _basis(t1 - t0).dot(samples.reshape(4, -1)).reshape(ROWS, -1))
+        return HermitePiece(t0, t1, basis(t1 - t0).dot(samples.reshape(4, -1)).reshape(ROWS, -1))
 
     def mapped(self, linear: Callable[[Array], Array], constant: Array | None = None) -> "HermitePiece":
         """The piece of a function of the value: linear, which is given many values in rows, plus a constant (m,)."""
@@ -67,7 +67,7 @@ def weights(
 
 
 @lru_cache(maxsize=64)
-def _basis(h: float) -> Array:
+def basis(h: float) -> Array:
     """The matrix that takes q0, v0, q1, v1 of samples h [s] apart to a piece's rows, of q and v by turns; (12, 4)."""
     q0, v0, q1, v1 = np.eye(4)
     still = bend = twist = np.zeros(4)

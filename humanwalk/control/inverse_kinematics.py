@@ -8,11 +8,11 @@ residual smaller; so a target out of reach gives the nearest pose, and says so.
 """
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from operator import mul
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,8 @@ from humanwalk.quantity import quantity
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int_]
 Vector6 = tuple[float, ...]
+Angles = tuple[float, ...]
+"""Joint angles [rad]: arrays as short as these take longer than plain numbers wherever no matrix is at hand."""
 
 STEP_FRACTIONS = (1.0, 0.5, 0.25, 0.1, 0.03, 0.003)
 """Shares of a Newton step that are tried until one lessens the residual."""
@@ -87,8 +89,7 @@ class InverseKinematicsParameters:
         return self.row_weights[:, None]
 
 
-@dataclass(frozen=True)
-class InverseKinematicsSolution:
+class InverseKinematicsSolution(NamedTuple):
     """What the iteration ended with.
 
     Attributes:
@@ -120,18 +121,21 @@ class LegKinematics:
         self.joint_names = tuple(joint_names)
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
+        self._ranges = tuple(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
         # A pose is followed by its Jacobian.
         self._at = lru_cache(maxsize=1)(self._chain.at)
 
-    def state(self, theta: Array) -> ChainState:
-        """Where the chain is at joint angles theta [rad], shape (n,)."""
-        return self._at(tuple(theta.tolist()))
+    def state(self, theta: Array | Angles) -> ChainState:
+        """Where the chain is at n joint angles theta [rad]."""
+        return self._at(theta if isinstance(theta, tuple) else tuple(theta.tolist()))
 
-    def within_range(self, theta: Array) -> Array:
+    def within_range(self, theta: Iterable[float]) -> Angles:
         """The nearest joint angles inside the joint ranges."""
-        # Twice as quick as numpy's clip, of which a control tick makes many.
-        nearest: Array = np.minimum(np.maximum(theta, self.lower), self.upper)
-        return nearest
+        return tuple([min(max(angle, low), high) for angle, (low, high) in zip(theta, self._ranges, strict=True)])
+
+    def off_ends(self, theta: Iterable[float]) -> bool:
+        """Whether no joint is at an end of its range."""
+        return all([low < angle < high for angle, (low, high) in zip(theta, self._ranges, strict=True)])
 
     def X_PS(self, theta: Array) -> RigidTransform:
         """Pose of the tip S in the base P at joint angles theta [rad], shape (n,)."""
@@ -152,9 +156,9 @@ class LegKinematics:
             J[:, i] = pose_error(self.X_PS(ahead), self.X_PS(behind)) / (2 * step)
         return J
 
-    def jacobian(self, theta: Array, kind: Literal["analytic", "numeric"]) -> Array:
+    def jacobian(self, theta: Array | Angles, kind: Literal["analytic", "numeric"]) -> Array:
         """The Jacobian of the named kind, shape (6, n)."""
-        return self.Jv_V_PS(theta) if kind == "analytic" else self.Jv_V_PS_numeric(theta)
+        return self.state(theta).jacobian() if kind == "analytic" else self.Jv_V_PS_numeric(np.array(theta))
 
 
 def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
@@ -194,7 +198,7 @@ def _pose_error(X: Pose, X_desired: Pose) -> Vector6:
 
 def solve_inverse_kinematics(
     leg: LegKinematics,
-    X_PS_desired: RigidTransform,
+    X_PS_desired: RigidTransform | Pose,
     theta_guess: Array,
     parameters: InverseKinematicsParameters | None = None,
 ) -> InverseKinematicsSolution:
@@ -211,45 +215,46 @@ def solve_inverse_kinematics(
         that is within reach, so one that stalls is tried once more with those joints in the middle of their ranges.
     """
     parameters = parameters or InverseKinematicsParameters()
-    first, first_cost = _iterate(leg, X_PS_desired, theta_guess, parameters)
+    desired = _axes_and_origin(X_PS_desired) if isinstance(X_PS_desired, RigidTransform) else X_PS_desired
+    first, first_cost = _iterate(leg, desired, theta_guess, parameters)
     if first.converged:
         return first
     at_end = (first.theta <= leg.lower) | (first.theta >= leg.upper)
     restart = np.where(at_end, 0.5 * (leg.lower + leg.upper), first.theta)
-    second, second_cost = _iterate(leg, X_PS_desired, restart, parameters)
+    second, second_cost = _iterate(leg, desired, restart, parameters)
     better = second.converged or second_cost < RESTART_GAIN * first_cost
-    return replace(second if better else first, iterations=first.iterations + second.iterations)
+    return (second if better else first)._replace(iterations=first.iterations + second.iterations)
 
 
 def _iterate(
     leg: LegKinematics,
-    X_PS_desired: RigidTransform,
+    desired: Pose,
     theta_guess: Array,
     parameters: InverseKinematicsParameters,
 ) -> tuple[InverseKinematicsSolution, float]:
     """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
     weights = parameters.row_weights.tolist()
-    desired = _axes_and_origin(X_PS_desired)
 
-    def at(theta: Array) -> tuple[Vector6, Vector6, float]:
+    def at(theta: Angles) -> tuple[Vector6, Vector6, float]:
         """Residual, weighted residual and its norm."""
         error = _pose_error(leg.state(theta).X_PS, desired)
         weighted = tuple(map(mul, weights, error))
         return error, weighted, math.hypot(*weighted)
 
-    theta = leg.within_range(theta_guess)
+    theta = leg.within_range(theta_guess.tolist())
     error, weighted, cost = at(theta)
     iterations, pull = 0, parameters.neutral_pull
     while math.hypot(*error) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
         J = leg.jacobian(theta, parameters.jacobian) * parameters.row_weights_column
-        step = _newton_step(leg, theta, J, np.array(weighted), parameters.damping * cost, pull)
-        longest = max(map(abs, step.tolist()))
-        if longest > parameters.max_step:
-            step *= parameters.max_step / longest
+        step = _newton_step(leg, theta, J, np.array(weighted), parameters.damping * cost, pull).tolist()
+        longest = max(map(abs, step))
+        shorter = parameters.max_step / longest if longest > parameters.max_step else 1.0
         # Shorten the step until it helps: far targets and joints at the end of their range bend the residual.
         for fraction in STEP_FRACTIONS:
-            trial = leg.within_range(theta + fraction * step)
+            trial = leg.within_range(
+                [angle + fraction * (shorter * way) for angle, way in zip(theta, step, strict=True)]
+            )
             trial_error, trial_weighted, trial_cost = at(trial)
             if trial_cost < cost:
                 break
@@ -261,26 +266,32 @@ def _iterate(
             break
         pull = 0.0
     residual = math.hypot(*error)
-    return InverseKinematicsSolution(theta, residual, iterations, residual <= parameters.tolerance), cost
+    return InverseKinematicsSolution(np.array(theta), residual, iterations, residual <= parameters.tolerance), cost
 
 
-def _newton_step(leg: LegKinematics, theta: Array, J: Array, error: Array, damping: float, pull: float) -> Array:
+def _newton_step(leg: LegKinematics, theta: Angles, J: Array, error: Array, damping: float, pull: float) -> Array:
     """Step -J+ error - (1 - J+ J) pull theta of the joints that are free to move, J+ damped; shape (n,)."""
 
     def step_of(free: Indices | slice) -> Array:
         Jf = J[:, free]
         square = Jf.dot(Jf.T)
-        damped = _inverse(square + damping * damping * _IDENTITY, WELL_CONDITIONED)
-        plain = _inverse(square, WELL_CONDITIONED) if pull else damped
-        if damped is not None and plain is not None:
-            wanted, back = -damped.dot(error), pull * theta[free]
-            step: Array = (wanted + plain.dot(Jf.dot(back))).dot(Jf) - back if pull else wanted.dot(Jf)
+        damped = square + damping * damping * _IDENTITY
+        inverse = _inverse(square if pull else damped, WELL_CONDITIONED)
+        step: Array
+        if inverse is not None and not pull:
+            step = -inverse.dot(error).dot(Jf)
+            return step
+        if inverse is not None:
+            # What is damped is no nearer to singular.
+            *_, wanted, _ = dgesv(damped, error)
+            back = pull * np.array(theta)[free]
+            step = (inverse.dot(Jf.dot(back)) - wanted).dot(Jf) - back
             return step
         U, s, Vt, _ = dgesdd(Jf)
         # The tiny constant keeps a posture that is exactly singular from dividing by zero.
         along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
         spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
-        step = -along @ error - pull * spare.T @ (spare @ theta[free])
+        step = -along @ error - pull * spare.T @ (spare @ np.array(theta)[free])
         return step
 
     return _of_free_joints(leg, theta, step_of)
@@ -299,7 +310,7 @@ def _inverse(square: Array, least: float) -> Array | None:
 _IDENTITY = np.eye(6)
 
 
-def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices | slice], Array]) -> Array:
+def _of_free_joints(leg: LegKinematics, theta: Angles, motion: Callable[[Indices | slice], Array]) -> Array:
     """A motion of the joints, shape (n,), in which none at the end of its range moves outward: those are held.
 
     Args:
@@ -308,16 +319,16 @@ def _of_free_joints(leg: LegKinematics, theta: Array, motion: Callable[[Indices 
         motion: gives the motion of the joints with the given places, when all others are held.
     """
     result = motion(slice(None))
-    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
-    if not (at_lower | at_upper).any():
+    if leg.off_ends(theta):
         return result
-    free = np.arange(theta.size)
+    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
+    free = np.arange(len(theta))
     while True:
         outward = (at_lower & (result < 0)) | (at_upper & (result > 0))
         if not outward.any():
             return result
         free = np.setdiff1d(free, np.flatnonzero(outward))
-        result = np.zeros(theta.size)
+        result = np.zeros(len(theta))
         if free.size:
             result[free] = motion(free)
 
@@ -337,8 +348,8 @@ def joint_velocity(
         parameters: weights, and the floor that keeps the velocity finite near singular postures.
     """
     parameters = parameters or InverseKinematicsParameters()
-    weighted = parameters.row_weights * V_PS_desired
-    J = leg.jacobian(theta, parameters.jacobian) * parameters.row_weights_column
+    weighted, angles = parameters.row_weights * V_PS_desired, tuple(theta.tolist())
+    J = leg.jacobian(angles, parameters.jacobian) * parameters.row_weights_column
 
     def velocity_of(free: Indices | slice) -> Array:
         Jf, floor = J[:, free], max(parameters.singular_value_floor, RANK_FLOOR)
@@ -350,4 +361,4 @@ def joint_velocity(
         velocity: Array = (Vt.T * inverse) @ (U.T @ weighted)
         return velocity
 
-    return _of_free_joints(leg, theta, velocity_of)
+    return _of_free_joints(leg, angles, velocity_of)

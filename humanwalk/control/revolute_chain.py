@@ -7,6 +7,7 @@ steps of a plant, which has used the caches for its own, what is small is quicke
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,19 @@ Pose = tuple[Vector, Vector, Vector, Vector]
 """A frame in another: its axes x, y, z, then its origin."""
 
 NOWHERE = (0.0, 0.0, 0.0)
+
+
+def pose_of(wxyz: Sequence[float], origin: Sequence[float]) -> Pose:
+    """The pose with an orientation, as a quaternion that need not be normalised, and an origin [m]."""
+    w, x, y, z = wxyz
+    a, b, c = origin
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    return (
+        (1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)),
+        (s * (x * y - w * z), 1.0 - s * (x * x + z * z), s * (y * z + w * x)),
+        (s * (x * z + w * y), s * (y * z - w * x), 1.0 - s * (x * x + y * y)),
+        (a, b, c),
+    )
 
 
 @dataclass(frozen=True)
@@ -36,8 +50,7 @@ class Hinge:
     offset: Vector
 
 
-@dataclass(frozen=True)
-class ChainState:
+class ChainState(NamedTuple):
     """Where a chain is at some joint angles, everything in its base frame P.
 
     Attributes:

@@ -8,7 +8,7 @@ from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 from humanwalk.body.plant import add_human
 from humanwalk.diagrams.followed import followed_motion
 from humanwalk.diagrams.ground import add_level_ground
-from humanwalk.diagrams.reference import add_walking_reference, connect_soles
+from humanwalk.diagrams.reference import add_walking_reference
 from humanwalk.diagrams.start import require_reachable
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
@@ -53,7 +53,7 @@ def make_playback(scenario: Scenario) -> Diagram:
     else:
         reference = add_walking_reference(builder, scenario)
         solver = reference.inverse_kinematics
-        connect_soles(builder, reference.gait, solver)
+        builder.Connect(reference.gait.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
         builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
         pelvis = reference.gait.get_pelvis_reference_output_port()
         interpolator = builder.AddNamedSystem("interpolator", PostureInterpolator(plant.num_actuators()))

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
-from humanwalk.body import SIDES
 from humanwalk.body.plant import Subject
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.control.joint_map import base_first_mass_matrix
@@ -13,7 +12,7 @@ from humanwalk.control.stability import round_down
 from humanwalk.diagrams.followed import followed_motion
 from humanwalk.diagrams.foot_contact import FootContact, add_foot_contact, connect_spatial_forces
 from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
-from humanwalk.diagrams.reference import SoleTargets, add_walking_reference, connect_soles
+from humanwalk.diagrams.reference import add_walking_reference
 from humanwalk.diagrams.start import require_reachable, start_positions
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -21,6 +20,7 @@ from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
@@ -81,12 +81,15 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         reference = _add_gait(builder, scenario, human, bank, body, feet)
     builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
+    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
     actuation = bank.get_actuation_output_port()
-    if bank.is_linear and not scenario.follow.file:
-        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp))
-        builder.Connect(bank.get_driving_output_port(), law.get_driving_input_port())
-        builder.Connect(bank.get_driving_times_output_port(), law.get_driving_times_input_port())
+    if bank.is_linear and reference.samples is not None:
+        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp, human.kd, scenario.simulation.control_period))
+        builder.Connect(reference.samples.get_previous_state_output_port(), law.get_previous_state_input_port())
+        builder.Connect(reference.samples.get_previous_time_output_port(), law.get_previous_time_input_port())
+        builder.Connect(reference.samples.get_desired_state_output_port(), law.get_desired_state_input_port())
         builder.Connect(plant.get_state_output_port(), law.get_state_input_port())
+        builder.ConnectInput("feedforward", law.get_feedforward_input_port())
         actuation = law.get_actuation_output_port()
     builder.Connect(actuation, plant.get_actuation_input_port())
     if scenario.actuators.law == "implicit":
@@ -107,7 +110,6 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
         builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
 
-    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
     for port, name in (
         (plant.get_state_output_port(), "state"),
         (human.scene_graph.get_query_output_port(), "query_object"),
@@ -131,10 +133,11 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
 
 @dataclass(frozen=True)
 class _Reference:
-    """Ports of what the walker is to do, beside the joints' desired state."""
+    """What the walker is to do: ports beside the joints' desired state, and what makes samples of that."""
 
     pelvis: OutputPort
     exports: dict[str, OutputPort]
+    samples: InverseKinematicsSolver | None = None
 
 
 def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
@@ -164,11 +167,12 @@ def _add_gait(
         "phase": gait.get_phase_output_port(),
         "contact_schedule": gait.get_contact_schedule_output_port(),
     }
-    sole_targets: SoleTargets = gait
+    sole_targets = gait.get_sole_targets_output_port()
     if scenario.balance.foot_force.enabled:
-        sole_targets = level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
+        sole_targets = level_1.get_shifted_targets_output_port()
         exports["foot_shift"] = level_1.get_shift_output_port()
-    connect_soles(builder, sole_targets, solver)
+    builder.Connect(sole_targets, solver.get_sole_targets_input_port())
 
     posture = walking.arms.get_posture_output_port()
     if scenario.balance.upper_body.enabled:
@@ -194,7 +198,7 @@ def _add_gait(
     ):
         builder.Connect(sample, taken)
         exports[name] = sample
-    return _Reference(gait.get_pelvis_reference_output_port(), exports)
+    return _Reference(gait.get_pelvis_reference_output_port(), exports, solver)
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:
@@ -225,9 +229,7 @@ def _add_foot_force_balance(
             scenario.simulation.control_period,
         ),
     )
-    for side in SIDES:
-        builder.Connect(gait.get_sole_pose_output_port(side), level_1.get_sole_pose_input_port(side))
-        builder.Connect(gait.get_sole_velocity_output_port(side), level_1.get_sole_velocity_input_port(side))
+    builder.Connect(gait.get_sole_targets_output_port(), level_1.get_sole_targets_input_port())
     builder.Connect(gait.get_contact_schedule_output_port(), level_1.get_contact_schedule_input_port())
     builder.Connect(feet.foot_forces, level_1.get_foot_forces_input_port())
     return level_1

@@ -30,41 +30,37 @@ class ArmSwingParameters:
         check(self)
 
 
-class JointTarget(NamedTuple):
-    """Angle [rad] and rate [rad/s] of a joint."""
+class JointSwing(NamedTuple):
+    """Middle of a joint's swing [rad], and what times the right arm's swing is added to it [rad]."""
 
-    angle: float
-    rate: float
+    middle: float
+    amplitude: float
 
 
-def arm_targets(
-    parameters: ArmSwingParameters,
-    phase_right: float,
-    phase_rate: float,
-    speed_fraction: float = 1.0,
-    speed_fraction_rate: float = 0.0,
-) -> dict[str, JointTarget]:
-    """Targets of shoulders and elbows, by the thesis' way of naming joints.
+def arm_joints(parameters: ArmSwingParameters) -> dict[str, JointSwing]:
+    """How shoulders and elbows swing, by the thesis' way of naming joints."""
+    elbow_amplitude = min(parameters.elbow_amplitude, parameters.elbow_flexion)
+    joints = {}
+    # The left foot, and so the left arm, is half a cycle off: a sinusoid with the other sign.
+    for side, sign in (("Right", 1.0), ("Left", -1.0)):
+        joints[f"{side}ArmShoulderMotion"] = JointSwing(0.0, sign * parameters.shoulder_amplitude)
+        joints[f"{side}ArmElbowMotion"] = JointSwing(parameters.elbow_flexion, sign * elbow_amplitude)
+    return joints
 
-    phase_right: phase of the right foot, 0 at its touchdown; the left foot is half a cycle off.
+
+def arm_swing(
+    phase_right: float, phase_rate: float, speed_fraction: float = 1.0, speed_fraction_rate: float = 0.0
+) -> tuple[float, float]:
+    """Swing of the right arm as a share of its amplitude, forward positive, and its time derivative [1/s].
+
+    phase_right: phase of the right foot, 0 at its touchdown, when the arm is furthest back.
     phase_rate: [1/s], speed / walked stride.
     speed_fraction: speed as a share of full speed; the swing grows with it from hanging at rest.
     speed_fraction_rate: its time derivative [1/s].
-
-    The right arm is furthest back when the right foot lands in front. Rates are exact.
     """
-    targets = {}
-    for side, phase in (("Right", phase_right), ("Left", phase_right + 0.5)):
-        angle = 2.0 * math.pi * phase
-        swing = -speed_fraction * math.cos(angle)
-        swing_rate = speed_fraction * math.sin(angle) * 2.0 * math.pi * phase_rate - speed_fraction_rate * math.cos(
-            angle
-        )
-        elbow_amplitude = min(parameters.elbow_amplitude, parameters.elbow_flexion)
-        targets[f"{side}ArmShoulderMotion"] = JointTarget(
-            parameters.shoulder_amplitude * swing, parameters.shoulder_amplitude * swing_rate
-        )
-        targets[f"{side}ArmElbowMotion"] = JointTarget(
-            parameters.elbow_flexion + elbow_amplitude * swing, elbow_amplitude * swing_rate
-        )
-    return targets
+    angle = 2.0 * math.pi * phase_right
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return (
+        -speed_fraction * cosine,
+        speed_fraction * sine * 2.0 * math.pi * phase_rate - speed_fraction_rate * cosine,
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ from humanwalk.quantity import ParameterError, require_in_range
 Side = Literal["Right", "Left"]
 
 
-@dataclass(frozen=True)
-class FootTarget:
+class FootTarget(NamedTuple):
     """What one sole should do. Axes of the pelvis frame P: x forward, y left, z up.
 
     position: sole (3,) [m]; x and y from the middle between the hips, z from the ground as it is
@@ -45,8 +44,8 @@ class FootTarget:
     in_stance: whether the foot is on the ground.
     """
 
-    position: FloatArray
-    velocity: FloatArray
+    position: tuple[float, float, float]
+    velocity: tuple[float, float, float]
     height: float
     height_rate: float
     pitch: float
@@ -59,8 +58,7 @@ PELVIS_DEGREE = 10
 """Degree of the pelvis' target in time: a quintic of the distance, which is a quadratic of time."""
 
 
-@dataclass(frozen=True)
-class PelvisTarget:
+class PelvisTarget(NamedTuple):
     """What the pelvis should do.
 
     distance, speed, acceleration: walked forward from standing [m, m/s, m/s^2].
@@ -75,8 +73,7 @@ class PelvisTarget:
     drop_acceleration: float
 
 
-@dataclass(frozen=True)
-class GaitTarget:
+class GaitTarget(NamedTuple):
     """Targets of pelvis and feet at one time [s]."""
 
     time: float
@@ -142,10 +139,6 @@ class WalkingGait:
         """Targets at t [s]; every rate is the exact time derivative of its twin."""
         pelvis = self.pelvis(t)
         return GaitTarget(t, pelvis, self._foot("Right", pelvis), self._foot("Left", pelvis))
-
-    def foot(self, side: Side, t: float) -> FootTarget:
-        """Target of one foot at t [s]."""
-        return self._foot(side, self.pelvis(t))
 
     def pelvis(self, t: float) -> PelvisTarget:
         """Target of the pelvis at t [s].
@@ -220,14 +213,12 @@ class WalkingGait:
             pitch_slope /= self.parameters.walked_stride
         height_rate = height_slope * pelvis.speed
         return FootTarget(
-            position=np.array(
-                [
-                    x - 0.5 * self.parameters.step_length,
-                    self._y(side),
-                    height - self.parameters.offset + pelvis.drop,
-                ]
+            position=(
+                x - 0.5 * self.parameters.step_length,
+                self._y(side),
+                height - self.parameters.offset + pelvis.drop,
             ),
-            velocity=np.array([x_slope * pelvis.speed, 0.0, height_rate + pelvis.drop_rate]),
+            velocity=(x_slope * pelvis.speed, 0.0, height_rate + pelvis.drop_rate),
             height=height,
             height_rate=height_rate,
             pitch=pitch,

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, EventStatus, System
@@ -34,7 +33,8 @@ class Monitor:
     reason: str = ""
     interrupted: bool = False
     _next_look: float = field(default=0.0, repr=False)
-    _fallen_below: float = field(default=-np.inf, repr=False)
+    _fallen_below: float = field(default=-math.inf, repr=False)
+    _height: int = field(default=0, repr=False)
 
     def __call__(self, root_context: Context) -> EventStatus:
         """Simulator monitor: look at the state every CHECK_PERIOD."""
@@ -64,13 +64,13 @@ class Monitor:
         plant = self.watched
         if not isinstance(plant, MultibodyPlant):
             return ""
-        q = plant.GetPositions(plant.GetMyContextFromRoot(root_context))
-        pelvis_height = q[plant.GetBodyByName("Pelvis").floating_positions_start() + 6]
-        if self._fallen_below == -np.inf:
-            self._fallen_below = FALL_HEIGHT_SHARE * pelvis_height
-        if not np.isfinite(q).all():
+        q = plant.GetPositions(plant.GetMyContextFromRoot(root_context)).tolist()
+        if self._fallen_below == -math.inf:
+            self._height = plant.GetBodyByName("Pelvis").floating_positions_start() + 6
+            self._fallen_below = FALL_HEIGHT_SHARE * q[self._height]
+        if not all(map(math.isfinite, q)):
             return "not a number"
-        return "fell" if pelvis_height < self._fallen_below else ""
+        return "fell" if q[self._height] < self._fallen_below else ""
 
     @contextmanager
     def stop_on_interrupt(self) -> Iterator[None]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
 
-from humanwalk.gait.arm_swing import ArmSwingParameters, arm_targets
+from humanwalk.gait.arm_swing import ArmSwingParameters, arm_joints, arm_swing
 from humanwalk.gait.walking_gait import WalkingGait
 
 
@@ -36,33 +36,27 @@ class ArmSwingSource(LeafSystem):
         """
         super().__init__()
         self._gait = gait
-        self._parameters = parameters
         self._preview = preview
-        self._place = {name: i for i, name in enumerate(joint_names)}
-        self._n = len(joint_names)
-        self._start = np.zeros(2 * self._n)
+        n, place = len(joint_names), {name: i for i, name in enumerate(joint_names)}
+        # The posture is a sum of three, weighted by 1, swing and its rate.
+        self._parts = np.zeros((3, 2 * n))
         for name, angle in (start_posture or {}).items():
-            self._start[self._place[name]] = angle
+            self._parts[0, place[name]] = angle
+        for name, joint in arm_joints(parameters).items():
+            self._parts[0, place[name]] += joint.middle
+            self._parts[1, place[name]] = self._parts[2, n + place[name]] = joint.amplitude
         self._posture = self.DeclareVectorOutputPort(
-            "posture", 2 * self._n, self._calc_posture, prerequisites_of_calc={self.time_ticket()}
+            "posture", 2 * n, self._calc_posture, prerequisites_of_calc={self.time_ticket()}
         )
 
     def _calc_posture(self, context: Context, output: BasicVector) -> None:
         t = context.get_time() + self._preview
-        ramp, parameters = self._gait.ramp, self._gait.parameters
-        full = ramp.speed if ramp.speed > 0 else 1.0
-        targets = arm_targets(
-            self._parameters,
-            self._gait.phase("Right", t),
-            ramp.speed_at(t) / parameters.walked_stride,
-            ramp.speed_at(t) / full,
-            ramp.acceleration(t) / full,
+        gait, ramp = self._gait, self._gait.ramp
+        full, speed = ramp.speed if ramp.speed > 0 else 1.0, ramp.speed_at(t)
+        swing, rate = arm_swing(
+            gait.phase("Right", t), speed / gait.parameters.walked_stride, speed / full, ramp.acceleration(t) / full
         )
-        posture = self._start.copy()
-        for name, target in targets.items():
-            posture[self._place[name]] += target.angle
-            posture[self._n + self._place[name]] = target.rate
-        output.SetFromVector(posture)
+        output.SetFromVector(np.array((1.0, swing, rate)).dot(self._parts))
 
     def get_posture_output_port(self) -> OutputPort:
         """Output posture."""

@@ -1,14 +1,26 @@
 """Diagram: the balance that the thesis assumes, made visible as a force on the pelvis."""
 
 import numpy as np
+from pydrake.common import RandomDistribution
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable
 from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
-from pydrake.systems.primitives import Adder, Demultiplexer, Multiplexer, SparseMatrixGain, SymbolicVectorSystem
+from pydrake.systems.primitives import (
+    Demultiplexer,
+    LinearTransformDensity,
+    Multiplexer,
+    SparseMatrixGain,
+    SymbolicVectorSystem,
+)
 from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix
 
-from humanwalk.control.balance_support import BalanceSupportParameters, linear_gain, relative_quaternion, turning_wrench
+from humanwalk.control.balance_support import (
+    BalanceSupportParameters,
+    linear_gain,
+    relative_quaternion,
+    turning_stiffness,
+)
 
 
 class BalanceSupport(Diagram):
@@ -39,33 +51,41 @@ class BalanceSupport(Diagram):
             np.eye(13), np.eye(n)[first_q : first_q + 7], np.eye(plant.num_velocities())[of_velocities]
         )
         linear = linear_gain(parameters)
-        # From reference and motion of the pelvis: both quaternions, then what is linear.
-        quaternions = np.eye(26)[[*range(13, 17), *range(4)]]
-        gains = np.vstack((quaternions, np.hstack((np.zeros((6, 4)), -linear, np.zeros((6, 4)), linear))))
+        # From reference and motion of the pelvis: the matrix, by columns, that makes a relative quaternion of one, then
+        # the pelvis' quaternion, then what is linear.
+        relative = np.array([[relative_quaternion(one, reference) for reference in np.eye(4)] for one in np.eye(4)])
+        gains = np.zeros((16 + 4 + 6, 26))
+        gains[:16, :4] = relative.swapaxes(1, 2).reshape(16, 4)
+        gains[16:20, 13:17] = np.eye(4)
+        gains[20:, 4:13], gains[20:, 17:] = -linear, linear
         builder = DiagramBuilder()
         inputs = builder.AddSystem(Multiplexer([13, plant.num_multibody_states()]))
         parts = builder.AddSystem(SparseMatrixGain(csc_matrix(gains @ selected)))
-        split = builder.AddSystem(Demultiplexer([8, 6]))
-        q, turn = MakeVectorContinuousVariable(8, "q"), MakeVectorContinuousVariable(4, "turn")
+        split = builder.AddSystem(Demultiplexer([16, 4, 6]))
+        # It is made for random inputs, but does what is wanted: A w + b, with A and b from ports.
+        rotation = builder.AddSystem(LinearTransformDensity(RandomDistribution.kUniform, 4, 4))
+        turn = MakeVectorContinuousVariable(4, "turn")
         # Drake's expressions raise the processor's flag for numbers that are none, which NumPy would report.
         with np.errstate(invalid="ignore"):
-            relative, law = relative_quaternion(q[:4], q[4:]), turning_wrench(turn, parameters)
-        # Numbers are cheap in matrices and dear in expressions, and in one expression the relative quaternion would be
-        # worked out anew wherever it stands.
-        rotation = builder.AddSystem(SymbolicVectorSystem(input=q, output=relative))
-        turning = builder.AddSystem(SymbolicVectorSystem(input=turn, output=law))
-        wrench = builder.AddSystem(Adder(2, 6))
+            scale = turning_stiffness(turn, parameters)
+        # Products are cheap in matrices and dear in expressions.
+        stiffness = builder.AddSystem(SymbolicVectorSystem(input=turn, output=[scale]))
+        axis = builder.AddSystem(SparseMatrixGain(csc_matrix(np.eye(6, 4, 1))))
+        wrench = builder.AddSystem(LinearTransformDensity(RandomDistribution.kUniform, 1, 6))
         force = builder.AddSystem(SparseMatrixGain(csc_matrix(np.eye(plant.num_velocities())[:, of_velocities])))
         builder.Connect(inputs.get_output_port(), parts.get_input_port())
         builder.Connect(parts.get_output_port(), split.get_input_port())
-        builder.Connect(split.get_output_port(0), rotation.get_input_port())
-        builder.Connect(rotation.get_output_port(), turning.get_input_port())
-        builder.Connect(turning.get_output_port(), wrench.get_input_port(0))
-        builder.Connect(split.get_output_port(1), wrench.get_input_port(1))
-        builder.Connect(wrench.get_output_port(), force.get_input_port())
+        builder.Connect(split.get_output_port(0), rotation.get_input_port_A())
+        builder.Connect(split.get_output_port(1), rotation.get_input_port_w_in())
+        builder.Connect(rotation.get_output_port_w_out(), stiffness.get_input_port())
+        builder.Connect(rotation.get_output_port_w_out(), axis.get_input_port())
+        builder.Connect(axis.get_output_port(), wrench.get_input_port_A())
+        builder.Connect(stiffness.get_output_port(), wrench.get_input_port_w_in())
+        builder.Connect(split.get_output_port(2), wrench.get_input_port_b())
+        builder.Connect(wrench.get_output_port_w_out(), force.get_input_port())
         builder.ExportInput(inputs.get_input_port(0), "pelvis_reference")
         builder.ExportInput(inputs.get_input_port(1), "state")
-        builder.ExportOutput(wrench.get_output_port(), "wrench")
+        builder.ExportOutput(wrench.get_output_port_w_out(), "wrench")
         builder.ExportOutput(force.get_output_port(), "generalized_force")
         builder.BuildInto(self)
 

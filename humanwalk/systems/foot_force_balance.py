@@ -2,12 +2,16 @@
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.common.value import Value
-from pydrake.math import RigidTransform
-from pydrake.multibody.math import SpatialVelocity
-from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiscreteValues,
+    EventStatus,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
 
-from humanwalk.body import SIDES, Side
 from humanwalk.control.balance_levels import (
     FootForceBalanceParameters,
     desired_foot_forces,
@@ -23,13 +27,12 @@ class FootForceBalance(LeafSystem):
     The pelvis is taken as upright and heading along x, so that ground forces in W shift targets in P.
 
     Inputs:
-        X_PRs, X_PLs: RigidTransform, planned poses of the soles in the pelvis P.
-        V_PRs, V_PLs: SpatialVelocity of the same, in P.
+        sole_targets: (26) planned poses and velocities of the soles in the pelvis P, see InverseKinematicsSolver.
         contact_schedule: (2) right, left: 1 in stance, 0 in swing.
         foot_forces: (16) of FootForceObserver.
 
     Outputs:
-        X_PRs_shifted, X_PLs_shifted, V_PRs_shifted, V_PLs_shifted: the same, with the shift and its rate.
+        shifted_targets: (26) the same, with the shift and its rate.
         shift: (12) right x y z, left x y z [m], then their rates [m/s].
     """
 
@@ -39,29 +42,21 @@ class FootForceBalance(LeafSystem):
         self._weight = weight
         self._parameters = parameters
         self._period = period
-        self._X = {side: self.DeclareAbstractInputPort(f"X_P{side[0]}s", Value(RigidTransform())) for side in SIDES}
-        self._V = {side: self.DeclareAbstractInputPort(f"V_P{side[0]}s", Value(SpatialVelocity())) for side in SIDES}
+        self._sole_targets = self.DeclareVectorInputPort("sole_targets", 26)
         self._schedule = self.DeclareVectorInputPort("contact_schedule", 2)
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._state = self.DeclareDiscreteState(12)
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
         self._shift_output = self.DeclareStateOutputPort("shift", self._state)
-        self._X_outputs, self._V_outputs = {}, {}
-        for place, side in enumerate(SIDES):
-            self._X_outputs[side] = self.DeclareAbstractOutputPort(
-                f"X_P{side[0]}s_shifted",
-                lambda: Value(RigidTransform()),
-                lambda context, output, side=side, place=place: output.set_value(
-                    self._shifted_pose(context, side, place)
-                ),
-            )
-            self._V_outputs[side] = self.DeclareAbstractOutputPort(
-                f"V_P{side[0]}s_shifted",
-                lambda: Value(SpatialVelocity()),
-                lambda context, output, side=side, place=place: output.set_value(
-                    self._shifted_velocity(context, side, place)
-                ),
-            )
+        self._shifted_output = self.DeclareVectorOutputPort(
+            "shifted_targets",
+            26,
+            self._calc_shifted,
+            prerequisites_of_calc={
+                self.input_port_ticket(self._sole_targets.get_index()),
+                self.discrete_state_ticket(self._state),
+            },
+        )
 
     def _shift_and_rate(self, context: Context) -> Array:
         """Shape (2, 2, 3): shift and rate, foot, axis."""
@@ -77,21 +72,16 @@ class FootForceBalance(LeafSystem):
         discrete.set_value(self._state, np.concatenate((shift.ravel(), rate.ravel())))
         return EventStatus.Succeeded()
 
-    def _shifted_pose(self, context: Context, side: Side, place: int) -> RigidTransform:
-        X = self._X[side].Eval(context)
-        return RigidTransform(X.rotation(), X.translation() + self._shift_and_rate(context)[0, place])
+    def _calc_shifted(self, context: Context, output: BasicVector) -> None:
+        shift, rate = self._shift_and_rate(context)
+        targets = self._sole_targets.Eval(context).reshape(2, 13)
+        targets[:, 4:7] += shift
+        targets[:, 10:] += rate
+        output.SetFromVector(targets.ravel())
 
-    def _shifted_velocity(self, context: Context, side: Side, place: int) -> SpatialVelocity:
-        V = self._V[side].Eval(context)
-        return SpatialVelocity(V.rotational(), V.translational() + self._shift_and_rate(context)[1, place])
-
-    def get_sole_pose_input_port(self, side: Side) -> InputPort:
-        """Input X_PRs or X_PLs."""
-        return self._X[side]
-
-    def get_sole_velocity_input_port(self, side: Side) -> InputPort:
-        """Input V_PRs or V_PLs."""
-        return self._V[side]
+    def get_sole_targets_input_port(self) -> InputPort:
+        """Input sole_targets."""
+        return self._sole_targets
 
     def get_contact_schedule_input_port(self) -> InputPort:
         """Input contact_schedule."""
@@ -101,13 +91,9 @@ class FootForceBalance(LeafSystem):
         """Input foot_forces."""
         return self._foot_forces
 
-    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
-        """Output X_PRs_shifted or X_PLs_shifted."""
-        return self._X_outputs[side]
-
-    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
-        """Output V_PRs_shifted or V_PLs_shifted."""
-        return self._V_outputs[side]
+    def get_shifted_targets_output_port(self) -> OutputPort:
+        """Output shifted_targets."""
+        return self._shifted_output
 
     def get_shift_output_port(self) -> OutputPort:
         """Output shift."""

@@ -7,7 +7,6 @@ import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.geometry import SceneGraphInspector
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
-from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
 
 from humanwalk.body import SIDES
@@ -34,12 +33,14 @@ class FootForceObserver(LeafSystem):
     def __init__(self, plant: MultibodyPlant, inspector: SceneGraphInspector) -> None:
         """Make the observer of a finalised plant; `inspector` tells which body a contact surface belongs to."""
         super().__init__()
-        self._world = int(plant.world_body().index())
-        self._side_of_body = {
-            int(plant.GetBodyByName(name).index()): place
-            for place, side in enumerate(SIDES)
-            for name in FOOT_BODIES[side]
-        }
+        # By the bodies A and B of a contact: the foot that touches the ground, and the sign that makes a force on B one
+        # on the foot. Two legs against each other are not meant.
+        self._foot: dict[tuple[int, int], tuple[int, float]] = {}
+        world = int(plant.world_body().index())
+        for place, side in enumerate(SIDES):
+            for name in FOOT_BODIES[side]:
+                of_foot = int(plant.GetBodyByName(name).index())
+                self._foot |= {(world, of_foot): (place, 1.0), (of_foot, world): (place, -1.0)}
         self._body_of_geometry = {
             geometry: int(body.index())
             for geometry in inspector.GetAllGeometryIds()
@@ -65,7 +66,7 @@ class FootForceObserver(LeafSystem):
         wrenches = [[0.0] * 6, [0.0] * 6]
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
-            found = self._foot(pair.bodyA_index(), pair.bodyB_index())
+            found = self._foot.get((int(pair.bodyA_index()), int(pair.bodyB_index())))
             if found is not None:
                 foot, sign = found
                 _add(wrenches[foot], sign, pair.contact_point().tolist(), pair.contact_force().tolist())
@@ -73,22 +74,13 @@ class FootForceObserver(LeafSystem):
             info = results.hydroelastic_contact_info(i)
             surface, F_Ac_W = info.contact_surface(), info.F_Ac_W()
             # The force is that on M, the first body here.
-            found = self._foot(*(self._body_of_geometry[id] for id in (surface.id_N(), surface.id_M())))
+            found = self._foot.get((self._body_of_geometry[surface.id_N()], self._body_of_geometry[surface.id_M()]))
             if found is not None:
                 foot, sign = found
                 force, moment = F_Ac_W.translational().tolist(), F_Ac_W.rotational().tolist()
                 _add(wrenches[foot], sign, surface.centroid().tolist(), force, moment)
         right, left = (foot_force(F[3:], F[:3]).vector for F in wrenches)
         output.SetFromVector(np.array((*right, *left)))
-
-    def _foot(self, body_A: BodyIndex | int, body_B: BodyIndex | int) -> tuple[int, float] | None:
-        """The foot that touches the ground, and the sign that makes a force on B one on the foot; None if none does."""
-        # Either may be the ground; two legs against each other are not meant.
-        a, b = int(body_A), int(body_B)
-        if self._world not in (a, b):
-            return None
-        foot, sign = self._side_of_body.get(a + b - self._world), 1.0 if a == self._world else -1.0
-        return None if foot is None else (foot, sign)
 
     def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(friction_used(self._output.Eval(context)))

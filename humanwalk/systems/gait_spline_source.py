@@ -1,32 +1,25 @@
 """Diagram: where both soles and the pelvis should be, from the gait's splines."""
 
+import math
 from collections.abc import Callable
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
-from pydrake.common.value import Value
-from pydrake.math import RigidTransform, RotationMatrix
-from pydrake.multibody.math import SpatialVelocity
 from pydrake.polynomial import Polynomial
 from pydrake.systems.framework import BasicVector, Context, Diagram, DiagramBuilder, LeafSystem, OutputPort
 from pydrake.systems.primitives import TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
-from humanwalk.body import SIDES, Side, Skeleton
+from humanwalk.body import SIDES, Skeleton
 from humanwalk.gait.walking_gait import PELVIS_DEGREE, FootTarget, PelvisTarget, WalkingGait
 
 Array = npt.NDArray[np.float64]
 
 FOREVER = 1e6
 """Time at which the pelvis stops [s]; no simulation lasts that long."""
-
-
-def _sole_velocity(foot: FootTarget) -> SpatialVelocity:
-    return SpatialVelocity(np.array([0.0, foot.pitch_rate, 0.0]), foot.velocity)
 
 
 class GaitSplineSource(Diagram):
@@ -38,9 +31,9 @@ class GaitSplineSource(Diagram):
     The soles' targets are those of the time `preview` from now, everything else is of now.
 
     Outputs:
-        X_PRs, X_PLs: RigidTransform, desired pose of the right and left sole frame in the pelvis P. Soles are level
-            in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by the path's toe_drop.
-        V_PRs, V_PLs: SpatialVelocity, their time derivatives, in P.
+        sole_targets: (26) where the right, then where the left sole frame should be in the pelvis P, each as Drake's
+            floating base has it: quaternion wxyz, position [m], angular velocity [rad/s], velocity [m/s]. Soles are
+            level in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by the path's toe_drop.
         pelvis_reference: (13) where the pelvis should be in W, upright and walking along +x, as Drake's floating base
             has it: quaternion wxyz, position [m], angular velocity [rad/s], velocity [m/s].
         phase: (2) phase of the right and of the left foot in [0, 1), 0 at touchdown.
@@ -67,13 +60,9 @@ class GaitSplineSource(Diagram):
         """The output contact_schedule at a time [s]."""
         return _schedule(self._gait, time)
 
-    def get_sole_pose_output_port(self, side: Side) -> OutputPort:
-        """Output X_PRs or X_PLs."""
-        return self.GetOutputPort(f"X_P{side[0]}s")
-
-    def get_sole_velocity_output_port(self, side: Side) -> OutputPort:
-        """Output V_PRs or V_PLs."""
-        return self.GetOutputPort(f"V_P{side[0]}s")
+    def get_sole_targets_output_port(self) -> OutputPort:
+        """Output sole_targets."""
+        return self.GetOutputPort("sole_targets")
 
     def get_pelvis_reference_output_port(self) -> OutputPort:
         """Output pelvis_reference."""
@@ -95,22 +84,10 @@ class GaitFeetSource(LeafSystem):
         super().__init__()
         self._gait = gait
         self._preview = preview
-        # Pose and velocity of a foot are asked for one after the other.
-        self._foot_at = lru_cache(maxsize=4)(gait.foot)
-        self._hip_height = skeleton.hip_height
-        for side in SIDES:
-            self.DeclareAbstractOutputPort(
-                f"X_P{side[0]}s",
-                lambda: Value(RigidTransform()),
-                lambda context, output, side=side: output.set_value(self._sole_pose(self._foot(context, side))),
-                prerequisites_of_calc={self.time_ticket()},
-            )
-            self.DeclareAbstractOutputPort(
-                f"V_P{side[0]}s",
-                lambda: Value(SpatialVelocity()),
-                lambda context, output, side=side: output.set_value(_sole_velocity(self._foot(context, side))),
-                prerequisites_of_calc={self.time_ticket()},
-            )
+        self._below_hips = skeleton.hip_height - gait.parameters.offset
+        self.DeclareVectorOutputPort(
+            "sole_targets", 26, self._calc_sole_targets, prerequisites_of_calc={self.time_ticket()}
+        )
         self.DeclareVectorOutputPort("phase", 2, self._calc_phase, prerequisites_of_calc={self.time_ticket()})
         self.DeclareVectorOutputPort(
             "contact_schedule",
@@ -119,15 +96,15 @@ class GaitFeetSource(LeafSystem):
             prerequisites_of_calc={self.time_ticket()},
         )
 
-    def _foot(self, context: Context, side: Side) -> FootTarget:
-        return self._foot_at(side, context.get_time() + self._preview)
+    def _calc_sole_targets(self, context: Context, output: BasicVector) -> None:
+        target = self._gait.target(context.get_time() + self._preview)
+        output.SetFromVector(np.array((*self._sole_target(target.right), *self._sole_target(target.left))))
 
-    def _sole_pose(self, foot: FootTarget) -> RigidTransform:
-        below_hips = self._hip_height - self._gait.parameters.offset
-        return RigidTransform(
-            RotationMatrix.MakeYRotation(foot.pitch),
-            foot.position - np.array([0.0, 0.0, below_hips]),
-        )
+    def _sole_target(self, foot: FootTarget) -> tuple[float, ...]:
+        x, y, z = foot.position
+        half = 0.5 * foot.pitch
+        turned = math.cos(half), 0.0, math.sin(half), 0.0
+        return *turned, x, y, z - self._below_hips, 0.0, foot.pitch_rate, 0.0, *foot.velocity
 
     def _calc_phase(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(_phases(self._gait, context.get_time()))

@@ -4,13 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
-from pydrake.common.value import Value
-from pydrake.math import RigidTransform
-from pydrake.multibody.math import SpatialVelocity
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
 
-from humanwalk.body import LEG_JOINTS, SIDES, Side
+from humanwalk.body import LEG_JOINTS, SIDES
 from humanwalk.control.inverse_kinematics import (
     InverseKinematicsParameters,
     LegKinematics,
@@ -18,6 +15,7 @@ from humanwalk.control.inverse_kinematics import (
     solve_inverse_kinematics,
 )
 from humanwalk.control.joint_map import JointMap
+from humanwalk.control.revolute_chain import pose_of
 
 Array = npt.NDArray[np.float64]
 
@@ -32,8 +30,8 @@ class InverseKinematicsSolver(LeafSystem):
     the sample before and the sample after the present, for a PostureInterpolator.
 
     Inputs:
-        X_PRs, X_PLs: RigidTransform, desired poses of the right and left sole in the pelvis P.
-        V_PRs, V_PLs: SpatialVelocity of the same, in P.
+        sole_targets: (26) of the right, then of the left sole in the pelvis P, as Drake's floating base has it: desired
+            quaternion wxyz, position [m], angular velocity [rad/s], velocity [m/s].
         posture: (84) desired angles [rad] and rates [rad/s] of all 42 joints, in actuator order; the legs'
             entries are replaced. Optional: zero when not connected.
 
@@ -75,11 +73,7 @@ class InverseKinematicsSolver(LeafSystem):
         self._bent_knees[[names.index(f"{side}LegTibiaMotion") for side in SIDES]] = FIRST_KNEE_BEND
         self._preview = preview
 
-        self._X, self._V = {}, {}
-        for side in SIDES:
-            letter = side[0]
-            self._X[side] = self.DeclareAbstractInputPort(f"X_P{letter}s", Value(RigidTransform()))
-            self._V[side] = self.DeclareAbstractInputPort(f"V_P{letter}s", Value(SpatialVelocity()))
+        self._sole_targets = self.DeclareVectorInputPort("sole_targets", 26)
         self._posture = self.DeclareVectorInputPort("posture", 2 * self._n)
 
         desired = self.DeclareDiscreteState(start)
@@ -117,24 +111,21 @@ class InverseKinematicsSolver(LeafSystem):
         found = self._posture.Eval(context) if self._posture.HasValue(context) else np.zeros(2 * self._n)
         q, v = found[: self._n], found[self._n :]
         report = np.empty(6)
-        for i, side in enumerate(SIDES):
+        for i, (side, target) in enumerate(zip(SIDES, self._sole_targets.Eval(context).reshape(2, 13), strict=True)):
             leg, places = self._legs[side], self._places[side]
-            solution = solve_inverse_kinematics(leg, self._X[side].Eval(context), warm[places], self._parameters)
+            w, x, y, z, *origin = target[:7].tolist()
+            solution = solve_inverse_kinematics(leg, pose_of((w, x, y, z), origin), warm[places], self._parameters)
             q[places] = solution.theta
-            v[places] = joint_velocity(leg, solution.theta, self._V[side].Eval(context).get_coeffs(), self._parameters)
+            v[places] = joint_velocity(leg, solution.theta, target[7:], self._parameters)
             report[i::2] = solution.residual, solution.iterations, solution.converged
         discrete.set_value(desired, found)
         discrete.set_value(sample_time, np.array([context.get_time() + self._preview]))
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
 
-    def get_sole_pose_input_port(self, side: Side) -> InputPort:
-        """Input X_PRs or X_PLs."""
-        return self._X[side]
-
-    def get_sole_velocity_input_port(self, side: Side) -> InputPort:
-        """Input V_PRs or V_PLs."""
-        return self._V[side]
+    def get_sole_targets_input_port(self) -> InputPort:
+        """Input sole_targets."""
+        return self._sole_targets
 
     def get_posture_input_port(self) -> InputPort:
         """Input posture."""

@@ -7,7 +7,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
 from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
 
-from humanwalk.control.hermite import ROWS, HermitePiece
+from humanwalk.control.hermite import HermitePiece
 from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
 from humanwalk.control.stability import round_down
@@ -59,9 +59,6 @@ class PdActuatorBank(LeafSystem):
             gains; for the plant's desired_state port (implicit law only). Rates are 0 for a continuous plant.
         actuation: (n) torque for the plant's actuation port [N m]: the feed-forward (implicit), with kd v_d for a
             continuous plant; the whole law clipped to the effort limits (explicit), plus kd v (semi-implicit).
-        driving (6n), driving_times (2): torque of the desired state and feed-forward, the actuation without -kp q, as
-            rows and times [s] of a HermitePiece, which change with the samples; for a LinearLaw. Only where the
-            law is linear, semi-implicit without limits; they need sample times.
         torque: (n) what the joints feel of the law [N m]: net_actuation, less kd v (semi-implicit).
         saturated: (n) 1 where a joint feels its effort limit, else 0.
     """
@@ -133,14 +130,6 @@ class PdActuatorBank(LeafSystem):
         self._actuation_output = self.DeclareVectorOutputPort(
             "actuation", n, self._calc_actuation, prerequisites_of_calc=needs
         )
-        if self.is_linear:
-            of_piece = {self._driving_piece.ticket()}
-            self._driving_output = self.DeclareVectorOutputPort(
-                "driving", ROWS * n, self._calc_driving_rows, prerequisites_of_calc=of_piece
-            )
-            self._driving_times_output = self.DeclareVectorOutputPort(
-                "driving_times", 2, self._calc_driving_times, prerequisites_of_calc=of_piece
-            )
         felt = {
             self.input_port_ticket(self._net_actuation.get_index()),
             self.input_port_ticket(self._state.get_index()),
@@ -158,13 +147,6 @@ class PdActuatorBank(LeafSystem):
 
     def _calc_driving_piece(self, context: Context, piece: Value) -> None:
         piece.set_value(self._piece.Eval(context).mapped(self._driving, self._fed_forward(context)))
-
-    def _calc_driving_rows(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._driving_piece.Eval(context).rows.ravel())
-
-    def _calc_driving_times(self, context: Context, output: BasicVector) -> None:
-        piece: HermitePiece = self._driving_piece.Eval(context)
-        output.SetFromVector(np.array((piece.t0, piece.t1)))
 
     def _driving(self, desired: Array) -> Array:
         """kp q_d + kd v_d of desired states (..., 2n), shape (..., n)."""
@@ -310,14 +292,6 @@ class PdActuatorBank(LeafSystem):
     def get_actuation_output_port(self) -> OutputPort:
         """Output actuation."""
         return self._actuation_output
-
-    def get_driving_output_port(self) -> OutputPort:
-        """Output driving (linear law only)."""
-        return self._driving_output
-
-    def get_driving_times_output_port(self) -> OutputPort:
-        """Output driving_times (linear law only)."""
-        return self._driving_times_output
 
     def get_torque_output_port(self) -> OutputPort:
         """Output torque."""

@@ -16,7 +16,7 @@ from pydrake.multibody.tree import (
 
 from humanwalk.body import LEG_JOINTS, SIDES
 from humanwalk.body.plant import Subject, kinematics_plant
-from humanwalk.control.revolute_chain import RevoluteChain
+from humanwalk.control.revolute_chain import RevoluteChain, pose_of
 
 PLANT = kinematics_plant(Subject())
 CHAINS = {side: RevoluteChain.of(PLANT, "Pelvis", f"{side}Leg_Sole", LEG_JOINTS[side]) for side in SIDES}
@@ -33,6 +33,17 @@ def test_pose_and_jacobian_are_drakes(side, theta):
     found = CHAINS[side].at(theta)
     np.testing.assert_allclose(np.array(found.X_PS).T, S.CalcPose(context, P).GetAsMatrix34(), atol=1e-14)
     np.testing.assert_allclose(found.jacobian(), J[:, [joint.velocity_start() for joint in joints]], atol=1e-14)
+
+
+@given(
+    roll_pitch_yaw=st.tuples(*[st.floats(-3.2, 3.2)] * 3),
+    origin=st.tuples(*[st.floats(-2.0, 2.0)] * 3),
+    length=st.floats(0.5, 2.0),
+)
+def test_a_pose_of_a_quaternion_is_drakes_whatever_its_length(roll_pitch_yaw, origin, length):
+    X = RigidTransform(RollPitchYaw(roll_pitch_yaw), origin)
+    found = pose_of(length * X.rotation().ToQuaternion().wxyz(), origin)
+    np.testing.assert_allclose(np.array(found).T, X.GetAsMatrix34(), atol=1e-14)
 
 
 def plant_with(make_joint):

@@ -1,14 +1,30 @@
 """Arms: against the legs, hanging at rest, rates exact."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.gait.arm_swing import ArmSwingParameters, arm_targets
+from humanwalk.gait.arm_swing import ArmSwingParameters, arm_joints, arm_swing
 
 P = ArmSwingParameters()
 JOINTS = {f"{side}Arm{joint}Motion" for side in ("Right", "Left") for joint in ("Shoulder", "Elbow")}
+
+
+class JointTarget(NamedTuple):
+    angle: float
+    rate: float
+
+
+def arm_targets(parameters, *phases, **speeds):
+    """Targets of all joints at a phase."""
+    swing, rate = arm_swing(*phases, **speeds)
+    return {
+        name: JointTarget(joint.middle + joint.amplitude * swing, joint.amplitude * rate)
+        for name, joint in arm_joints(parameters).items()
+    }
 
 
 def test_names_are_the_thesis_own():

@@ -127,7 +127,7 @@ def test_first_touchdown_is_in_front_with_the_other_foot_half_a_cycle_on(gait):
     first, other = feet(target) if gait.first_swing == "Right" else feet(target)[::-1]
     assert target.pelvis.distance == pytest.approx(p.step_length * (0.5 / p.duty_factor - 0.5))
     assert target.pelvis.drop == pytest.approx(p.offset, abs=1e-12)
-    np.testing.assert_allclose(first.position[[0, 2]], [p.step_length / 2, 0.0], atol=1e-9)
+    np.testing.assert_allclose(first.position[::2], [p.step_length / 2, 0.0], atol=1e-9)
     assert other.position[0] == pytest.approx(p.step_length * (0.5 - 0.5 / p.duty_factor))
     assert other.phase == pytest.approx(0.5)
 
@@ -146,7 +146,7 @@ def test_velocities_are_the_limits_of_differences(gait, t):
     h = 1e-6
     now, ahead, behind = gait.target(t), gait.target(t + h), gait.target(t - h)
     for foot, after, before in zip(feet(now), feet(ahead), feet(behind), strict=True):
-        difference = (after.position - before.position) / (2 * h)
+        difference = np.subtract(after.position, before.position) / (2 * h)
         scale = 1.0 + np.linalg.norm(foot.velocity)
         np.testing.assert_allclose(foot.velocity, difference, rtol=0, atol=2e-2 * scale)
         rate = (after.height - before.height) / (2 * h)
@@ -186,8 +186,8 @@ def test_the_other_leg_first_is_the_mirror_image():
     right, left = (WalkingGait(FootPathParameters(), HALF_WIDTH, SpeedRamp(), side) for side in ("Right", "Left"))
     for t in TIMES:
         a, b = right.target(t), left.target(t)
-        np.testing.assert_array_equal(a.right.position * [1, -1, 1], b.left.position)
-        np.testing.assert_array_equal(a.left.position * [1, -1, 1], b.right.position)
+        np.testing.assert_array_equal(np.multiply(a.right.position, [1, -1, 1]), b.left.position)
+        np.testing.assert_array_equal(np.multiply(a.left.position, [1, -1, 1]), b.right.position)
 
 
 def test_standing_for_ever_with_speed_zero():

@@ -2,20 +2,15 @@
 
 import numpy as np
 import pytest
-from pydrake.common.value import Value
-from pydrake.math import RigidTransform, RotationMatrix
-from pydrake.multibody.math import SpatialVelocity
 from pydrake.systems.analysis import Simulator
 
-from humanwalk.body import SIDES
 from humanwalk.control.balance_levels import FootForceBalanceParameters
 from humanwalk.systems.foot_force_balance import FootForceBalance
 
 WEIGHT = 686.0
 PERIOD = 0.005
 PARAMETERS = FootForceBalanceParameters(enabled=True)
-X = {side: RigidTransform(RotationMatrix.MakeYRotation(0.2), [0.1 * i, 0.2, -0.9]) for i, side in enumerate(SIDES)}
-V = {side: np.arange(6.0) + i for i, side in enumerate(SIDES)}
+TARGETS = np.arange(26.0)
 
 
 @pytest.fixture
@@ -25,9 +20,7 @@ def level():
 
 def simulator_of(level, schedule=(1, 1), vertical=(WEIGHT / 2, WEIGHT / 2)):
     context = level.CreateDefaultContext()
-    for side in SIDES:
-        level.get_sole_pose_input_port(side).FixValue(context, Value(X[side]))
-        level.get_sole_velocity_input_port(side).FixValue(context, Value(SpatialVelocity(V[side])))
+    level.get_sole_targets_input_port().FixValue(context, TARGETS)
     level.get_contact_schedule_input_port().FixValue(context, np.array(schedule, dtype=float))
     forces = np.zeros((2, 8))
     forces[:, 2] = vertical
@@ -43,16 +36,14 @@ def shift_and_rate(level, simulator):
 
 def test_ports(level):
     names = {level.get_input_port(i).get_name() for i in range(level.num_input_ports())}
-    assert names == {"X_PRs", "X_PLs", "V_PRs", "V_PLs", "contact_schedule", "foot_forces"}
+    assert names == {"sole_targets", "contact_schedule", "foot_forces"}
+    assert level.get_sole_targets_input_port().size() == 26
     assert level.get_contact_schedule_input_port().size() == 2
     assert level.get_foot_forces_input_port().size() == 16
     port = level.get_shift_output_port()
     assert (port.get_name(), port.size()) == ("shift", 12)
-    for side in SIDES:
-        assert level.get_sole_pose_input_port(side).get_name() == f"X_P{side[0]}s"
-        assert level.get_sole_velocity_input_port(side).get_name() == f"V_P{side[0]}s"
-        assert level.get_sole_pose_output_port(side).get_name() == f"X_P{side[0]}s_shifted"
-        assert level.get_sole_velocity_output_port(side).get_name() == f"V_P{side[0]}s_shifted"
+    port = level.get_shifted_targets_output_port()
+    assert (port.get_name(), port.size()) == ("shifted_targets", 26)
 
 
 @pytest.mark.parametrize(
@@ -63,10 +54,7 @@ def test_with_the_desired_forces_the_plan_passes_unchanged(level, schedule, vert
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
     np.testing.assert_array_equal(level.get_shift_output_port().Eval(context), 0.0)
-    for side in SIDES:
-        assert level.get_sole_pose_output_port(side).Eval(context).IsExactlyEqualTo(X[side])
-        V_shifted = level.get_sole_velocity_output_port(side).Eval(context)
-        np.testing.assert_array_equal(V_shifted.get_coeffs(), V[side])
+    np.testing.assert_array_equal(level.get_shifted_targets_output_port().Eval(context), TARGETS)
 
 
 def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
@@ -83,12 +71,9 @@ def test_shift_and_its_rate_are_added_to_the_plan(level):
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
     shift, rate = (part.reshape(2, 3) for part in shift_and_rate(level, simulator))
-    for i, side in enumerate(SIDES):
-        X_shifted = level.get_sole_pose_output_port(side).Eval(context)
-        np.testing.assert_allclose(X_shifted.translation(), X[side].translation() + shift[i])
-        np.testing.assert_array_equal(X_shifted.rotation().matrix(), X[side].rotation().matrix())
-        V_shifted = level.get_sole_velocity_output_port(side).Eval(context).get_coeffs()
-        np.testing.assert_allclose(V_shifted, V[side] + np.concatenate((np.zeros(3), rate[i])))
+    added = np.zeros((2, 13))
+    added[:, 4:7], added[:, 10:] = shift, rate
+    np.testing.assert_allclose(level.get_shifted_targets_output_port().Eval(context), TARGETS + added.ravel())
 
 
 def test_the_rate_is_what_the_shift_does_until_the_next_update(level):

@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from pydrake.multibody.math import SpatialVelocity
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
@@ -31,11 +29,14 @@ def places(joints):
     return {side: [joints.names.index(name) for name in LEG_JOINTS[side]] for side in SIDES}
 
 
-def fixed_context(solver, legs, theta=THETA, V_PS=V):
+def sole_target(X_PS, V_PS=V):
+    return np.concatenate((X_PS.rotation().ToQuaternion().wxyz(), X_PS.translation(), V_PS))
+
+
+def fixed_context(solver, legs):
     context = solver.CreateDefaultContext()
-    for side in SIDES:
-        solver.get_sole_pose_input_port(side).FixValue(context, Value(legs[side].X_PS(theta)))
-        solver.get_sole_velocity_input_port(side).FixValue(context, Value(SpatialVelocity(V_PS)))
+    targets = [sole_target(legs[side].X_PS(THETA)) for side in SIDES]
+    solver.get_sole_targets_input_port().FixValue(context, np.concatenate(targets))
     return context
 
 
@@ -60,7 +61,8 @@ def count_solutions(monkeypatch):
 
 def test_ports(solver):
     inputs = [solver.get_input_port(i).get_name() for i in range(solver.num_input_ports())]
-    assert sorted(inputs) == ["V_PLs", "V_PRs", "X_PLs", "X_PRs", "posture"]
+    assert sorted(inputs) == ["posture", "sole_targets"]
+    assert solver.get_sole_targets_input_port().size() == 26
     assert solver.get_posture_input_port().size() == 2 * N
     for port, name, size in (
         (solver.get_desired_state_output_port(), "desired_state", 2 * N),
@@ -68,9 +70,6 @@ def test_ports(solver):
         (solver.get_status_output_port(), "status", 6),
     ):
         assert (port.get_name(), port.size()) == (name, size)
-    for side in SIDES:
-        assert solver.get_sole_pose_input_port(side).get_name() == f"X_P{side[0]}s"
-        assert solver.get_sole_velocity_input_port(side).get_name() == f"V_P{side[0]}s"
 
 
 def test_initialisation_solves_for_time_zero(solver, legs, places):
@@ -130,7 +129,8 @@ def test_status_of_a_reached_pose(solver, legs):
 def test_a_pose_out_of_reach_is_flagged_for_its_leg_alone(solver, legs, places):
     context = fixed_context(solver, legs)
     far = RigidTransform(legs["Left"].X_PS(np.zeros(7)).translation() - [0.0, 0.0, 0.1])
-    solver.get_sole_pose_input_port("Left").FixValue(context, Value(far))
+    targets = np.concatenate((sole_target(legs["Right"].X_PS(THETA)), sole_target(far)))
+    solver.get_sole_targets_input_port().FixValue(context, targets)
     simulator = initialized(solver, context)
     simulator.AdvanceTo(2.5 * PERIOD)
     status = solver.get_status_output_port().Eval(context)
@@ -190,9 +190,7 @@ def walk(plant, gait, skeleton, period, until):
     builder = DiagramBuilder()
     source = builder.AddSystem(GaitSplineSource(gait, skeleton))
     solver = builder.AddSystem(InverseKinematicsSolver(plant, InverseKinematicsParameters(tolerance=1e-9), period))
-    for side in SIDES:
-        builder.Connect(source.get_sole_pose_output_port(side), solver.get_sole_pose_input_port(side))
-        builder.Connect(source.get_sole_velocity_output_port(side), solver.get_sole_velocity_input_port(side))
+    builder.Connect(source.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
     ports = (
         solver.get_sample_time_output_port(),
         solver.get_desired_state_output_port(),

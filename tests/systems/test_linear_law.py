@@ -1,4 +1,4 @@
-"""What Drake's blocks make of a bank's driving torque is the bank's own actuation."""
+"""What Drake's blocks make of samples is a bank's own actuation."""
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 N = 42
+PERIOD = 0.01
 KP, KD = np.linspace(1.0, 900.0, N), np.linspace(0.1, 20.0, N)
 
 
@@ -20,51 +21,55 @@ def bank(plant):
 
 @pytest.fixture(scope="module")
 def law(plant):
-    return LinearLaw(plant, KP)
+    return LinearLaw(plant, KP, KD, PERIOD)
 
 
 def test_ports(law, plant):
-    sizes = {law.get_input_port(i).get_name(): law.get_input_port(i).size() for i in range(law.num_input_ports())}
-    assert sizes == {"driving": 6 * N, "driving_times": 2, "state": plant.num_multibody_states()}
+    ports = [
+        law.get_previous_state_input_port(),
+        law.get_desired_state_input_port(),
+        law.get_previous_time_input_port(),
+        law.get_state_input_port(),
+        law.get_feedforward_input_port(),
+    ]
+    names = ["previous_state", "desired_state", "previous_time", "state", "feedforward"]
+    assert [port.get_name() for port in ports] == names
+    assert [port.size() for port in ports] == [2 * N, 2 * N, 1, plant.num_multibody_states(), N]
+    assert law.num_input_ports() == len(ports)
     assert law.get_actuation_output_port().size() == N
 
 
 @given(
     rng=st.integers(0, 2**32 - 1).map(np.random.default_rng),
     share=st.sampled_from([-0.5, 0.0, 0.3, 0.9, 1.0, 1.5]),
-    before=st.booleans(),
     fed=st.booleans(),
 )
-def test_it_is_the_banks_actuation(bank, law, plant, rng, share, before, fed):
-    """Before, between and after the samples; with and without a sample before and a feed-forward."""
+def test_it_is_the_banks_actuation(bank, law, plant, rng, share, fed):
+    """Before, between and after the samples; with and without a feed-forward."""
     joints, state = JointMap.of(plant), rng.normal(size=plant.num_multibody_states())
-    inputs = {"desired_state": rng.normal(size=2 * N), "sample_time": [1.01], "state": state}
-    if before:
-        inputs |= {"previous_state": rng.normal(size=2 * N), "previous_time": [1.0]}
+    inputs = {
+        "previous_state": rng.normal(size=2 * N),
+        "previous_time": [1.0],
+        "desired_state": rng.normal(size=2 * N),
+        "state": state,
+    }
     if fed:
         inputs["feedforward"] = rng.normal(size=N)
     of_bank, of_law = bank.CreateDefaultContext(), law.CreateDefaultContext()
     for name, value in inputs.items():
         bank.GetInputPort(name).FixValue(of_bank, value)
-    of_bank.SetTime(1.0 + 0.01 * share)
-    of_law.SetTime(1.0 + 0.01 * share)
-    for port, value in (
-        (law.get_driving_input_port(), bank.get_driving_output_port().Eval(of_bank)),
-        (law.get_driving_times_input_port(), bank.get_driving_times_output_port().Eval(of_bank)),
-        (law.get_state_input_port(), state),
-    ):
-        port.FixValue(of_law, value)
+        law.GetInputPort(name).FixValue(of_law, value)
+    bank.get_sample_time_input_port().FixValue(of_bank, [1.0 + PERIOD])
+    of_bank.SetTime(1.0 + PERIOD * share)
+    of_law.SetTime(1.0 + PERIOD * share)
     found = law.get_actuation_output_port().Eval(of_law)
-    np.testing.assert_allclose(found, bank.get_actuation_output_port().Eval(of_bank), atol=1e-9)
-    # The actuation without the driving torque is -kp q.
+    np.testing.assert_allclose(found, bank.get_actuation_output_port().Eval(of_bank), rtol=1e-9, atol=1e-7)
     held = bank.get_held_desired_state_output_port().Eval(of_bank)
     expected = KP * (held[:N] - joints.positions(state)) + KD * held[N:] + inputs.get("feedforward", 0.0)
-    np.testing.assert_allclose(found, expected, atol=1e-9)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-7)
 
 
-def test_only_a_linear_bank_shows_what_drives(plant, bank):
+def test_a_bank_is_linear_if_semi_implicit_and_without_limits(plant, bank):
     assert bank.is_linear
     for law, limits in (("semi_implicit", np.full(N, 100.0)), ("explicit", np.full(N, np.inf))):
-        other = PdActuatorBank(plant, KP, KD, law=law, effort_limits=limits)
-        assert not other.is_linear
-        assert not other.HasOutputPort("driving")
+        assert not PdActuatorBank(plant, KP, KD, law=law, effort_limits=limits).is_linear
