@@ -52,5 +52,4 @@ def add_walking_reference(builder: DiagramBuilder, scenario: Scenario) -> Walkin
 
 def standing_posture(scenario: Scenario) -> dict[str, float]:
     """Joint angles [rad] by name of the gait at time zero, where they are not zero: legs straight, arms hanging."""
-    # Arms hang at rest, so a swing of nothing; it keeps the sign of a zero, by which records are compared bit by bit.
-    return {name: joint.middle or -0.0 * joint.amplitude for name, joint in arm_joints(scenario.gait.arms).items()}
+    return {name: joint.middle for name, joint in arm_joints(scenario.gait.arms).items()}
