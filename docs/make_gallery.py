@@ -35,7 +35,7 @@ LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
 
 @dataclass(frozen=True)
 class Shot:
-    """One run of the gallery: a strip of one stride of steady walking, or of some instants [s], a video, and figures."""
+    """A run of the gallery: a strip of one stride of steady walking, or of some instants [s], a video, and figures."""
 
     scenario: str
     overrides: dict[str, str] = field(default_factory=dict)
