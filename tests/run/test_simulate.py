@@ -16,7 +16,7 @@ from humanwalk.run.signals import TIME, matrix
 from humanwalk.run.simulate import prepare, simulate
 from humanwalk.run.walk import summary_table
 from humanwalk.scenario import load_scenario
-from humanwalk.systems.pd_actuator_bank import PdActuatorBank
+from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 
 GRAVITY = 9.81
 SPEED = 1.4
@@ -223,15 +223,15 @@ def test_interrupt_ends_a_run_and_keeps_its_signals():
 
 
 def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch):
-    calculate = PdActuatorBank._calc_piece
+    solve = InverseKinematicsSolver._solve
     plant = kinematics_plant(Subject())
 
-    def run_away(self, context, piece):
+    def run_away(self, context, discrete):
         if context.get_time() >= 0.05:
             plant.SetPositions(plant.CreateDefaultContext(), np.full(plant.num_positions(), np.nan))
-        calculate(self, context, piece)
+        return solve(self, context, discrete)
 
-    monkeypatch.setattr(PdActuatorBank, "_calc_piece", run_away)
+    monkeypatch.setattr(InverseKinematicsSolver, "_solve", run_away)
     outcome = simulate(thesis(1.0))
     assert outcome.end.startswith("solver failed:")
     assert len(outcome.end.splitlines()) == 1

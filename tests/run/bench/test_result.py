@@ -186,7 +186,7 @@ def test_a_scenario_is_measured_in_a_process_of_its_own():
     result = bench(["stand"], {"duration": "0.02"}, 1, lambda *what: progress.append(what))
     (cost,) = result.scenarios.values()
     assert progress == [("stand", 0, 1)]
-    assert {"WholeBodyController", "GaitPlanner", "PdActuatorBank"} <= set(cost.by_system)
+    assert {"WholeBodyController", "GaitPlanner"} <= set(cost.by_system)
     assert cost.peak_memory_MB > 50
     assert all(np.isfinite([cost.wall, cost.plant, cost.startup_s]))
     assert isinstance(cost, ScenarioCost)
