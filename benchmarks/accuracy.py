@@ -126,8 +126,8 @@ def motion(variant: Variant, duration: float) -> Motion:
     prepared.simulator.Initialize()
     prepared.simulator.AdvanceTo(duration)
     time, force, angle, com = (np.array(column) for column in zip(*kept, strict=True))
-    # Of a discrete plant the force seen at an instant is that of the step that begins there.
-    held = force[:-1] if prepared.plant.time_step() > 0 else 0.5 * (force[1:] + force[:-1])
+    # Of a discrete plant the force seen at an instant is that of the step that ends there.
+    held = force[1:] if prepared.plant.time_step() > 0 else 0.5 * (force[1:] + force[:-1])
     impulse = np.vstack((np.zeros(6), np.cumsum(held * np.diff(time)[:, None], axis=0)))
 
     def at(instants: Array, values: Array) -> Array:
