@@ -99,9 +99,7 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
     if law == "semi_implicit":
         # The bank's own law, without Python; the bank is asked for what it tells of it.
-        held = builder.AddNamedSystem(
-            "held_actuation", HeldActuation(human.joints, human.kp, human.kd, human.effort_limits)
-        )
+        held = builder.AddNamedSystem("held_actuation", HeldActuation(plant, human.kp, human.kd, human.effort_limits))
         builder.Connect(controller.get_torque_output_port(), held.get_feedforward_input_port())
         builder.Connect(controller.get_desired_state_output_port(), held.get_desired_state_input_port())
         builder.Connect(controller.get_sample_time_output_port(), held.get_sample_time_input_port())

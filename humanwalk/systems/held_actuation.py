@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable, Variable
 from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
 from pydrake.systems.primitives import Adder, Multiplexer, Saturation, SparseMatrixGain, SymbolicVectorSystem
@@ -30,11 +31,11 @@ class HeldActuation(Diagram):
         actuation: (n) torque for the plant's actuation port [N m].
     """
 
-    def __init__(self, joints: JointMap, kp: Array, kd: Array, effort_limits: Array) -> None:
-        """Make the law of a plant's joints.
+    def __init__(self, plant: MultibodyPlant, kp: Array, kd: Array, effort_limits: Array) -> None:
+        """Make the law of a finalised plant.
 
         Args:
-            joints: of the plant.
+            plant: whose joints are driven.
             kp, kd: gains [N m/rad], [N m s/rad], shape (n,), in actuator order.
             effort_limits: [N m], shape (n,).
         """
@@ -47,7 +48,8 @@ class HeldActuation(Diagram):
             i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
             return builder.AddSystem(SparseMatrixGain(csc_matrix((values, (i, j)), shape=(rows, columns))))
 
-        joint, q, v, nx = np.arange(n), joints.q, joints.num_positions + joints.v, 2 * joints.num_positions - 1
+        joints, nx = JointMap.of(plant), plant.num_multibody_states()
+        joint, q, v = np.arange(n), joints.q, joints.num_positions + joints.v
         of_desired = gain(n, 2 * n, (joint, joint, kp), (joint, n + joint, kd))
         of_state = gain(n, nx, (joint, q, -kp), (joint, v, -kd))
         damping = gain(n, nx, (joint, v, kd))

@@ -16,7 +16,7 @@ from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 def laws():
     human = add_human_plant(DiagramBuilder(), load_scenario("walk"), visuals=False)
     bank = PdActuatorBank(human.plant, human.kp, human.kd, "semi_implicit", human.effort_limits)
-    return bank, HeldActuation(human.joints, human.kp, human.kd, human.effort_limits)
+    return bank, HeldActuation(human.plant, human.kp, human.kd, human.effort_limits)
 
 
 def actuation(law, time, state, desired_state, sample_time, feedforward):
