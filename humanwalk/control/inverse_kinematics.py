@@ -21,6 +21,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from scipy.linalg.lapack import dgesdd, dgesv
 
 from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain
+from humanwalk.control.rotation import rotation_vector
 from humanwalk.quantity import quantity
 
 Array = npt.NDArray[np.float64]
@@ -176,24 +177,8 @@ def _axes_and_origin(X: RigidTransform) -> Pose:
 
 
 def _pose_error(X: Pose, X_desired: Pose) -> Vector6:
-    # Sine and cosine of the angle, twice, from the antisymmetric part and the trace of R R_desired'.
-    x = y = z = 0.0
-    cosine2 = -1.0
-    for (a, b, c), (d, e, f) in zip(X[:3], X_desired[:3], strict=True):
-        x += e * c - f * b
-        y += f * a - d * c
-        z += d * b - e * a
-        cosine2 += a * d + b * e + c * f
-    sine2 = math.sqrt(x * x + y * y + z * z)
-    if cosine2 < 0.0:
-        # Beyond a right angle the antisymmetric part loses the axis.
-        turn = RotationMatrix(np.array(X[:3]).T @ np.array(X_desired[:3])).ToAngleAxis()
-        x, y, z = turn.angle() * turn.axis()
-        scale = 1.0
-    else:
-        scale = math.atan2(sine2, cosine2) / sine2 if sine2 > 1e-12 else 0.5
     (a, b, c), (d, e, f) = X[3], X_desired[3]
-    return scale * x, scale * y, scale * z, a - d, b - e, c - f
+    return *rotation_vector(X_desired[:3], X[:3]), a - d, b - e, c - f
 
 
 def solve_inverse_kinematics(

@@ -14,8 +14,9 @@ import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RevoluteJoint
 
+from humanwalk.control.rotation import Vector
+
 Array = npt.NDArray[np.float64]
-Vector = tuple[float, float, float]
 Pose = tuple[Vector, Vector, Vector, Vector]
 """A frame in another: its axes x, y, z, then its origin."""
 

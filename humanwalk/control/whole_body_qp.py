@@ -14,6 +14,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
+from humanwalk.control.rotation import Vector, rotation_vector
 from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 from humanwalk.quantity import quantity
 
@@ -411,8 +412,10 @@ class _Tasks:
         return self.velocity[6 * place : 6 * place + 3]
 
     def rotation_error(self, place: int, yaw: float, pitch: float) -> Vector:
-        """Rotation vector that turns a body into Rz(yaw) Ry(pitch)."""
-        return rotation_error(yaw, pitch, self.X_WB[place])
+        """Rotation vector in W that turns a body into Rz(yaw) Ry(pitch)."""
+        c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+        x, y, z, _ = zip(*self.X_WB[place], strict=True)
+        return rotation_vector((x, y, z), ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp)))
 
     def turn(
         self,
@@ -445,25 +448,3 @@ class _Tasks:
 def is_foot_posture(joint_name: str) -> bool:
     """Whether a joint is one of those of the foot that keep a posture: ankle twist, mid-foot and toes."""
     return any(word in joint_name for word in ("AnkleTwist", "FootMiddle", "FootToes"))
-
-
-Vector = tuple[float, float, float]
-
-
-def rotation_error(yaw: float, pitch: float, X_WB: Sequence[Sequence[float]]) -> Vector:
-    """Rotation vector in W that turns R_WB, the first three columns, into Rz(yaw) Ry(pitch).
-
-    Exact up to a right angle, then bounded.
-    """
-    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
-    wanted = ((c * cp, s * cp, -sp), (-s, c, 0.0), (c * sp, s * sp, cp))
-    # The cross products of actual and wanted axes add up to twice sine times axis, the dot products to the trace.
-    x = y = z = trace = 0.0
-    for (ax, ay, az), (wx, wy, wz) in zip(zip(*X_WB, strict=True), wanted, strict=False):
-        x += ay * wz - az * wy
-        y += az * wx - ax * wz
-        z += ax * wy - ay * wx
-        trace += ax * wx + ay * wy + az * wz
-    length = math.hypot(x, y, z)
-    scale = math.atan2(length, trace - 1.0) / length if length > 2e-9 else 0.5
-    return scale * x, scale * y, scale * z
