@@ -23,17 +23,17 @@ import numpy.typing as npt
 from matplotlib.ticker import LogLocator, NullLocator
 from pydrake.systems.framework import EventStatus
 
-from humanwalk.control.joint_map import JointMap
+from humanwalk.bench.cost import in_turns
+from humanwalk.bench.result import machine
+from humanwalk.bench.timed_walk import TimedWalk
+from humanwalk.body.joint_map import JointMap
+from humanwalk.files import write_text
+from humanwalk.measures.summary import contact_with_hysteresis
 from humanwalk.quantity import ParameterError
-from humanwalk.run.bench.cost import in_turns
-from humanwalk.run.bench.result import machine
-from humanwalk.run.bench.timed_walk import TimedWalk
-from humanwalk.run.files import write_text
-from humanwalk.run.measures import contact_with_hysteresis
 from humanwalk.run.monitor import Monitor
-from humanwalk.run.plots.drawing import TICK_SIZE, label, new_figure, save
 from humanwalk.run.simulate import prepare
 from humanwalk.scenario import load_scenario
+from humanwalk.view.plots.drawing import TICK_SIZE, label, new_figure, save
 
 Array = npt.NDArray[np.float64]
 

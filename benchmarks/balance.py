@@ -25,16 +25,16 @@ from pydrake.systems.analysis import InitializeParams, Simulator
 from pydrake.systems.framework import Context, Diagram
 
 from humanwalk.body import SIDES
-from humanwalk.control.command import CommandProfile
-from humanwalk.control.commanded_path import Place
-from humanwalk.control.push import Push
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.run.measures import cost_of_transport, steady_from, touchdowns
+from humanwalk.measures.signals import TIME
+from humanwalk.measures.summary import cost_of_transport, steady_from, touchdowns
 from humanwalk.run.monitor import Monitor
-from humanwalk.run.signals import TIME
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems.push_source import PushSource
+from humanwalk.walking.command import CommandProfile
+from humanwalk.walking.commanded_path import Place
+from humanwalk.walking.push import Push
 
 Array = npt.NDArray[np.float64]
 

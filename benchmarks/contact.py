@@ -20,17 +20,17 @@ import pyarrow.parquet as pq
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body import SIDES, sole_patches
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
-from humanwalk.control.asperity import AsperityParameters, friction_bound, friction_force, normal_force
-from humanwalk.control.contact_step import Contacts, ContactStep
-from humanwalk.control.joint_map import JointMap
+from humanwalk.contact.asperity import AsperityParameters, friction_bound, friction_force, normal_force
+from humanwalk.contact.contact_step import Contacts, ContactStep
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.run.measures import CONTACT_ON_N, GRAVITY, foot_contact, steady_from, touchdowns
-from humanwalk.run.plots.drawing import curve, label, legend, level, new_figure, save
-from humanwalk.run.signals import TIME, matrix, signal_columns
+from humanwalk.measures.signals import TIME, matrix, signal_columns
+from humanwalk.measures.summary import CONTACT_ON_N, GRAVITY, foot_contact, steady_from, touchdowns
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems import asperity_contact
+from humanwalk.view.plots.drawing import curve, label, legend, level, new_figure, save
 
 ROOT = Path(__file__).parent.parent
 RUNS = ROOT / "runs" / "contact"
@@ -80,7 +80,7 @@ def evaluation() -> dict[str, Any]:
     system = []
     for place in range(LONGEST_EVALUATION):
         simulator.AdvanceTo(1.0 + 1e-3 * place)
-        system.append(spent(contact.get_spatial_forces_output_port().Eval, of_contact))
+        system.append(spent(contact.GetOutputPort("spatial_forces").Eval, of_contact))
     steps = steps[-LONGEST_EVALUATION::5]
 
     def law(contacts: Contacts) -> None:

@@ -21,17 +21,17 @@ import numpy.typing as npt
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import EventStatus
 
+from humanwalk.bench.bare_plant import BarePlant, record_plant
+from humanwalk.bench.cost import Cost, cost_of, in_turns
+from humanwalk.bench.result import machine
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.mjcf import GRAVITY, to_mjcf
 from humanwalk.body.plant import kinematics_plant
+from humanwalk.choices.world import human_gains
 from humanwalk.control.balance_support import support_wrench
-from humanwalk.control.joint_map import JointMap
-from humanwalk.control.mujoco_map import MujocoMap
-from humanwalk.diagrams.human_plant import human_gains
+from humanwalk.exchange.mujoco_map import MujocoMap
+from humanwalk.files import write_text
 from humanwalk.quantity import ParameterError
-from humanwalk.run.bench.bare_plant import BarePlant, record_plant
-from humanwalk.run.bench.cost import Cost, cost_of, in_turns
-from humanwalk.run.bench.result import machine
-from humanwalk.run.files import write_text
 from humanwalk.run.simulate import prepare
 from humanwalk.scenario import Scenario, load_scenario
 

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from humanwalk.run.bench import read_result
-from humanwalk.run.bench.tables import COLUMNS
-from humanwalk.run.files import write_text
+from humanwalk.bench import read_result
+from humanwalk.bench.tables import COLUMNS
+from humanwalk.files import write_text
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"

@@ -24,15 +24,15 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 
+from humanwalk.bench.cost import in_turns
+from humanwalk.bench.measure import ONE_THREAD
+from humanwalk.bench.result import machine
+from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.body import contact_spheres, sdf
 from humanwalk.body.contact import POINT_STIFFNESS, ContactSphere
 from humanwalk.body.plant import Subject
 from humanwalk.body.skeleton import Skeleton
-from humanwalk.run.bench.cost import in_turns
-from humanwalk.run.bench.measure import ONE_THREAD
-from humanwalk.run.bench.result import machine
-from humanwalk.run.bench.timed_walk import TimedWalk
-from humanwalk.run.files import write_text
+from humanwalk.files import write_text
 from humanwalk.scenario import load_scenario
 
 RESULTS = Path(__file__).parent / "results"
@@ -78,9 +78,7 @@ def with_contact_points(across: tuple[int, ...] = (2, 4, 8, 16)) -> list[dict[st
     """The thesis' walk with more spheres under each part of a sole, side by side, of the same stiffness together."""
     walks = {}
     for n in across:
-        with patch(
-            "humanwalk.diagrams.human_plant.add_human", lambda plant, subject, n=n: add_human(plant, subject, n)
-        ):
+        with patch("humanwalk.choices.world.add_human", lambda plant, subject, n=n: add_human(plant, subject, n)):
             walks[6 * n] = TimedWalk(load_scenario("thesis", {"duration": "2"}), record=False)
     costs = in_turns({str(points): walk.advance for points, walk in walks.items()}, 2.0)
     first = np.array([cost.cpu for cost in costs[str(6 * across[0])]])
@@ -119,7 +117,7 @@ def add_human(plant: MultibodyPlant, subject: Subject, across: int) -> ModelInst
 _WORKER = """
 import logging, sys
 logging.getLogger("drake").setLevel(logging.ERROR)
-from humanwalk.run.bench.timed_walk import TimedWalk
+from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.scenario import load_scenario
 walk = TimedWalk(load_scenario("thesis", {"duration": "10"}))
 print("ready", flush=True)

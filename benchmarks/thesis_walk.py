@@ -33,8 +33,8 @@ REQUIRED = {
 
 def measure_once(overrides: dict[str, str]) -> dict:
     """Simulate in this process and return its measures."""
-    from humanwalk.run.measures import summarize
-    from humanwalk.run.signals import matrix
+    from humanwalk.measures.signals import matrix
+    from humanwalk.measures.summary import summarize
     from humanwalk.run.simulate import simulate
     from humanwalk.scenario import load_scenario
 

@@ -14,8 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from humanwalk.run.bench.cost import CHUNK
-from humanwalk.run.bench.measure import ONE_THREAD
+from humanwalk.bench.cost import CHUNK
+from humanwalk.bench.measure import ONE_THREAD
 
 # Needs of a checkout only what has long been there.
 _WORKER = """

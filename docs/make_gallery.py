@@ -11,15 +11,15 @@ from pathlib import Path
 
 from rich.console import Console
 
+from humanwalk.cli.walk import walk_and_write
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.run.diagram_picture import draw_diagram
-from humanwalk.run.files import make_folder
+from humanwalk.files import make_folder
 from humanwalk.run.folder import Run
-from humanwalk.run.plots import PLOTS, write_gait_figures
-from humanwalk.run.plots.drawing import save
-from humanwalk.run.video import VideoParameters, record_video, write_snapshot
-from humanwalk.run.walk import walk_and_write
 from humanwalk.scenario import load_scenario, shipped_scenarios
+from humanwalk.view.diagram_picture import draw_diagram
+from humanwalk.view.plots import PLOTS, write_gait_figures
+from humanwalk.view.plots.drawing import save
+from humanwalk.view.video import VideoParameters, record_video, write_snapshot
 
 DOCS = Path(__file__).parent
 GALLERY, IMAGES = DOCS / "gallery", DOCS / "images"

@@ -10,10 +10,10 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body import human
 from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.choices.start import start_positions
+from humanwalk.choices.world import add_human_plant
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
-from humanwalk.diagrams.human_plant import add_human_plant
-from humanwalk.diagrams.start import start_positions
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
@@ -40,13 +40,13 @@ def main(duration: float = 3.0) -> float:
     bank = builder.AddSystem(PdActuatorBank(plant, body.kp, body.kd))
     support = builder.AddSystem(BalanceSupport(plant, BalanceSupportParameters()))
 
-    builder.Connect(source.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
-    builder.Connect(solver.get_desired_state_output_port(), bank.get_desired_state_input_port())
-    builder.Connect(solver.get_sample_time_output_port(), bank.get_sample_time_input_port())
-    builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(body.instance))
-    builder.Connect(source.get_pelvis_reference_output_port(), support.get_pelvis_reference_input_port())
-    builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-    builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
+    builder.Connect(source.GetOutputPort("sole_targets"), solver.GetInputPort("sole_targets"))
+    builder.Connect(solver.GetOutputPort("desired_state"), bank.GetInputPort("desired_state"))
+    builder.Connect(solver.GetOutputPort("sample_time"), bank.GetInputPort("sample_time"))
+    builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(body.instance))
+    builder.Connect(source.GetOutputPort("pelvis_reference"), support.GetInputPort("pelvis_reference"))
+    builder.Connect(plant.get_state_output_port(), support.GetInputPort("state"))
+    builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
     meshcat = Meshcat(MeshcatParams(host="localhost"))
     MeshcatVisualizer.AddToBuilder(builder, body.scene_graph, meshcat)
 

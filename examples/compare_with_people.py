@@ -4,7 +4,7 @@ Run it with: python examples/compare_with_people.py
 """
 
 from humanwalk import load_scenario, simulate
-from humanwalk.run.human_likeness import compare
+from humanwalk.measures.human_likeness import compare
 
 
 def main(heights: tuple[float, ...] = (0.12, 0.16, 0.20), duration: float = 4.0) -> dict[float, float]:

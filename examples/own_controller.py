@@ -10,7 +10,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
 from humanwalk import load_scenario, make_walker
-from humanwalk.control.joint_map import JointMap
+from humanwalk.body.joint_map import JointMap
 
 
 class AnklePush(LeafSystem):

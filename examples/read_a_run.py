@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from humanwalk import Run
-from humanwalk.run.export import export_run
+from humanwalk.exchange import export_run
 
 
 def main(folder: Path) -> float:

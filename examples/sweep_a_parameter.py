@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from humanwalk import load_scenario, simulate
-from humanwalk.run.measures import summarize
+from humanwalk.measures.summary import summarize
 
 
 def walk(step_height: float, duration: float) -> dict[str, float]:

@@ -18,7 +18,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from humanwalk.diagrams.balanced_walker import make_balanced_walker
+    from humanwalk.choices.balanced import make_balanced_walker
     from humanwalk.diagrams.playback import make_playback
     from humanwalk.diagrams.walker import make_walker
     from humanwalk.quantity import ParameterError
@@ -34,7 +34,7 @@ _HOMES = {
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
     "load_scenario": "humanwalk.scenario",
-    "make_balanced_walker": "humanwalk.diagrams.balanced_walker",
+    "make_balanced_walker": "humanwalk.choices.balanced",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
     "simulate": "humanwalk.run.simulate",

@@ -1,5 +1,5 @@
 """python -m humanwalk: the command line."""
 
-from humanwalk.run.cli import main
+from humanwalk.cli.main import main
 
 main()

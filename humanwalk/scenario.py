@@ -24,20 +24,20 @@ import yaml
 from pydrake.common.yaml import yaml_dump, yaml_load
 
 from humanwalk.body.plant import Subject
-from humanwalk.control.asperity import AsperityParameters
+from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBodyBalanceParameters
 from humanwalk.control.balance_support import BalanceSupportParameters
-from humanwalk.control.command import CommandParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.pd_control import ActuatorParameters
-from humanwalk.control.push import PushParameters
-from humanwalk.control.step_planner import StepPlannerParameters
 from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
-from humanwalk.gait.recorded_motion import FollowParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
+from humanwalk.motion.recorded_motion import FollowParameters
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
+from humanwalk.walking.command import CommandParameters
+from humanwalk.walking.push import PushParameters
+from humanwalk.walking.step_planner import StepPlannerParameters
 
 Contact = Literal["point", "hydroelastic", "asperity"]
 Controller = Literal["thesis", "balanced"]

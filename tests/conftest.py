@@ -1,14 +1,72 @@
 """What many tests look at: the reference human, as data and as a plant for kinematics."""
 
+import numpy as np
+import pyarrow as pa
 import pytest
+from scipy.spatial.transform import Rotation
 
 from humanwalk.body import LEG_JOINTS
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.control.inverse_kinematics import LegKinematics
-from humanwalk.control.joint_map import JointMap
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
+from humanwalk.measures.human_likeness import ANGLES, people
+from humanwalk.measures.signals import TIME
+from humanwalk.measures.summary import GRAVITY
+
+PERIOD = 0.005
+WEIGHT = 70.0 * GRAVITY
+DUTY, STRIDE, LENGTH, WIDTH = 0.6, 1.0, 1.3, 0.12
+
+
+def of_people(name, phase):
+    """People's mean of an angle at shares of the gait cycle [deg]."""
+    cycle, mean, _ = people(ANGLES[name].people)
+    # The end of the cycle meets its beginning.
+    return np.interp(100.0 * (phase % 1.0), cycle, mean + cycle / 100.0 * (mean[0] - mean[-1]))
+
+
+def hump_force(share, first, dip, second):
+    """Vertical force over the share of a stance [body weights]: up, down, up and down, by half cosines.
+
+    It lands and lifts at once, so that the stance is as long as it was made.
+    """
+    places, values = [0.0, 0.25, 0.5, 0.75, 1.0], [0.2, first, dip, second, 0.2]
+    piece = np.clip(np.searchsorted(places, share, side="right") - 1, 0, 3)
+    low, high = np.take(values, piece), np.take(values, piece + 1)
+    return low + (high - low) * (1 - np.cos(np.pi * (4 * share - piece))) / 2
+
+
+def make_walk(duration=8.0, heading=0.0, standing=False, humps=(1.1, 0.8, 1.1), **more):
+    """A walk in which every angle is people's mean; the left leg is half a stride late; the pelvis is the right's."""
+    time = PERIOD * np.arange(round(duration / PERIOD) + 1)
+    data = {TIME: time}
+    for side, lag, y in (("Right", 0.0, -WIDTH / 2), ("Left", 0.5, WIDTH / 2)):
+        cycle = time / STRIDE - lag
+        phase = cycle % 1.0
+        down = (phase < DUTY - 1e-9) | standing
+        name = side.lower()
+        ahead = LENGTH * (np.floor(cycle) + np.clip((phase - DUTY) / (1 - DUTY), 0.0, 1.0) + lag)
+        data[f"{name}_sole.x_m"] = np.cos(heading) * ahead
+        data[f"{name}_sole.y_m"] = y + np.sin(heading) * ahead
+        data[f"{name}_foot.force_z_N"] = np.where(down, WEIGHT * hump_force(np.minimum(phase / DUTY, 1.0), *humps), 0.0)
+        if standing:
+            data[f"{name}_foot.force_z_N"] = np.full_like(time, WEIGHT / 2)
+        for joint, motion in (("hip", "LegFemurMotion"), ("knee", "LegTibiaMotion"), ("ankle", "LegAnkleMotion")):
+            data[f"{side}{motion}.angle_rad"] = np.radians(of_people(joint, phase))
+            data[f"{side}{motion}.velocity_rad_s"] = np.full_like(time, 1.0)
+            data[f"{side}{motion}.torque_N_m"] = 35.0 * np.sin(2 * np.pi * phase)
+    phase = time / STRIDE
+    rotation, obliquity, tilt = (of_people(f"pelvis {name}", phase) for name in ("rotation", "obliquity", "tilt"))
+    # Right side forward turns left, right side up rolls the left one down, forward tilt pitches about the y axis.
+    turn = Rotation.from_euler("ZXY", np.column_stack([rotation, -obliquity, tilt]), degrees=True)
+    data |= zip((f"pelvis.quaternion_{axis}" for axis in "xyzw"), turn.as_quat().T, strict=True)
+    data["com.x_m"] = LENGTH * time / STRIDE
+    data["com.y_m"] = 0.02 * np.sin(2 * np.pi * phase)
+    data["com.z_m"] = 0.9 + 0.018 * np.sin(4 * np.pi * phase)
+    return pa.table(data | more)
 
 
 @pytest.fixture(scope="session")
@@ -37,3 +95,9 @@ def legs(plant):
 def gait(skeleton):
     """The thesis' walk: L 0.5 m, H 0.2 m, offset 5 cm, 1.4 m/s."""
     return WalkingGait(FootPathParameters(), skeleton.hip_half_width, SpeedRamp(1.4, 0.365))
+
+
+@pytest.fixture(scope="session")
+def walk():
+    """Makes the signals of a walk that moves as people do, see `make_walk`."""
+    return make_walk

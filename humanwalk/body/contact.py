@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from humanwalk.body.anatomy import REFERENCE_STATURE
 from humanwalk.body.skeleton import SIDES, Side, Skeleton, Vector3
+from humanwalk.numerics import Array
 
 POINT_SET = "_point_"
 """Part of the name of every collision shape of the point-contact set."""
@@ -104,8 +104,8 @@ class SolePatch:
     """
 
     body: str
-    p_BoQ_B: npt.NDArray[np.float64]
-    area: npt.NDArray[np.float64]
+    p_BoQ_B: Array
+    area: Array
 
 
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
@@ -175,7 +175,7 @@ def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, 
     return SolePatch(body, np.array([(a, b, bottom) for a in x for b in y]), np.outer(along, across).ravel())
 
 
-def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[Array, Array]:
     """n points along an edge from end to end, and the length around each: at the ends, half of that between."""
     length = np.full(n, edge / (n - 1))
     length[[0, -1]] *= 0.5

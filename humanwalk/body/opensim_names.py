@@ -6,12 +6,10 @@ z right.
 """
 
 import numpy as np
-import numpy.typing as npt
 
-from humanwalk.body.groups import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS, SPINE_YAW_JOINTS
+from humanwalk.body.limbs import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS, SPINE_YAW_JOINTS
 from humanwalk.body.skeleton import SIDES
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 _RIGHT_AND_LEFT = {
     "LegFemurMotion": ("hip_flexion", 1.0),

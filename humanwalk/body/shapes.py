@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
+
+from humanwalk.numerics import Array
 
 Axis = Literal["x", "y", "z"]
 
@@ -29,11 +30,11 @@ class Box:
     height: float
 
     @property
-    def extent(self) -> npt.NDArray[np.float64]:
+    def extent(self) -> Array:
         """Edges of the bounding box along x, y, z [m], shape (3,)."""
         return np.array([self.depth, self.width, self.height])
 
-    def inertia(self, mass: float) -> npt.NDArray[np.float64]:
+    def inertia(self, mass: float) -> Array:
         """Principal moments about the centre [kg m2], shape (3,), for a mass [kg].
 
         m (a2 + b2) / 12; equation 3-1 prints 1/2 where Table 3.1 used 1/12 (erratum E1).
@@ -61,11 +62,11 @@ class Cylinder:
     axis: Axis = "z"
 
     @property
-    def extent(self) -> npt.NDArray[np.float64]:
+    def extent(self) -> Array:
         """Edges of the bounding box along x, y, z [m], shape (3,)."""
         return np.array([self.length if a == self.axis else 2.0 * self.radius for a in "xyz"])
 
-    def inertia(self, mass: float) -> npt.NDArray[np.float64]:
+    def inertia(self, mass: float) -> Array:
         """Principal moments about the centre [kg m2], shape (3,), for a mass [kg].
 
         Axial m r2 / 2, transverse m (3 r2 + l2) / 12. Equation 3-2 prints a thin rod, whose missing

@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from humanwalk.body.shapes import Shape
+from humanwalk.numerics import Array
 from humanwalk.quantity import require_in_range
 
 Side = Literal["Right", "Left"]
@@ -46,7 +46,7 @@ class Segment:
     source: str
 
     @property
-    def inertia(self) -> npt.NDArray[np.float64]:
+    def inertia(self) -> Array:
         """Principal moments about the centre of mass, I_BBcm_B [kg m2], shape (3,)."""
         return self.shape.inertia(self.mass)
 
@@ -215,9 +215,9 @@ class Skeleton:
         return ((s, self.inboard(s.name)) for s in self.segments)
 
     @cached_property
-    def origins(self) -> dict[str, npt.NDArray[np.float64]]:
+    def origins(self) -> dict[str, Array]:
         """Origin of every body frame in neutral standing, p_WB [m], shape (3,) each."""
-        origins: dict[str, npt.NDArray[np.float64]] = {}
+        origins: dict[str, Array] = {}
         for segment, inboard in self.tree():
             if inboard is None:
                 origins[segment.name] = np.array([0.0, 0.0, self.root_height])
@@ -231,13 +231,13 @@ class Skeleton:
         return math.fsum(s.mass for s in self.segments)
 
     @property
-    def com(self) -> npt.NDArray[np.float64]:
+    def com(self) -> Array:
         """Centre of mass in neutral standing, p_WC [m], shape (3,)."""
         moment = sum((s.mass * (self.origins[s.name] + s.com) for s in self.segments), np.zeros(3))
         return np.asarray(moment / self.total_mass, dtype=np.float64)
 
     @property
-    def inertia(self) -> npt.NDArray[np.float64]:
+    def inertia(self) -> Array:
         """Whole-body inertia about the centre of mass in neutral standing [kg m2], shape (3, 3)."""
         total = np.zeros((3, 3))
         for s in self.segments:

@@ -6,11 +6,9 @@ The thesis names both and gives no law or gain for either (E23); the laws here a
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from humanwalk.numerics import Array
 from humanwalk.quantity import quantity
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.math import atan2, sqrt
 from pydrake.math import max as max_
 
-from humanwalk.control.stability import largest_stable_step
+from humanwalk.numerics import Array
+from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import quantity
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, MultibodyForces
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.joint_map import JointMap
-from humanwalk.control.scalars import clip
-from humanwalk.control.walking_reference import BodyState, FootState
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int_]
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import CHEST, LEGS, PELVIS
+from humanwalk.numerics import Array, Indices
+from humanwalk.numerics.scalars import clip
+from humanwalk.walking.walking_reference import BodyState, FootState
 
 BY_V = JacobianWrtVariable.kV
 ORIGIN = np.zeros(3)
@@ -130,7 +127,7 @@ class BodyDynamics:
         self.mass = plant.CalcTotalMass(plant.CreateDefaultContext())
         self._context = plant.CreateDefaultContext()
         self._world = plant.world_frame()
-        self.bodies = ("Pelvis", "Ribs", *FOOT_BODIES["Right"], *FOOT_BODIES["Left"])
+        self.bodies = (PELVIS, CHEST, *(body for leg in LEGS.values() for body in leg.foot_bodies))
         bodies = [plant.GetBodyByName(name) for name in self.bodies]
         self._frames = [(body.body_frame(), int(body.index())) for body in bodies]
         self._ankles = {side: plant.GetFrameByName(f"{side}Leg_Ankle") for side in SIDES}

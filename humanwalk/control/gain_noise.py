@@ -6,11 +6,9 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from humanwalk.control.whole_body_qp import PrescribedGains, TaskGains, WholeBodyParameters
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 
 def gain_factors(size: int, noise: float, random: np.random.Generator) -> Array:

@@ -6,9 +6,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 ROWS = 6
 """Number of rows of a piece."""

@@ -15,17 +15,15 @@ from operator import mul
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from scipy.linalg.lapack import dgesdd, dgesv
 
 from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain
-from humanwalk.control.rotation import rotation_vector
+from humanwalk.numerics import Array, Indices
+from humanwalk.numerics.rotation import rotation_vector
 from humanwalk.quantity import quantity
 
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int_]
 Vector6 = tuple[float, ...]
 Angles = tuple[float, ...]
 """Joint angles [rad]: arrays as short as these take longer than plain numbers wherever no matrix is at hand."""

@@ -5,12 +5,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from humanwalk.control.stability import largest_stable_step
+from humanwalk.numerics import Array
+from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import ParameterError, quantity
-
-Array = npt.NDArray[np.float64]
 
 THESIS_ANKLE = (10000.0, 10.0)
 """kp [N m/rad] and kd [N m s/rad] of the ankle: the only gains that the thesis prints (Fig 4.8)."""

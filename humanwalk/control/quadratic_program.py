@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 import daqp
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg.lapack import dpotrf, dtrtri
 
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 EQUATION = 5
 """DAQP's word for a constraint that is an equation."""

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RevoluteJoint
 
-from humanwalk.control.rotation import Vector
+from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import Vector
 
-Array = npt.NDArray[np.float64]
 Pose = tuple[Vector, Vector, Vector, Vector]
 """A frame in another: its axes x, y, z, then its origin."""
 

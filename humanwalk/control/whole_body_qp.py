@@ -14,12 +14,10 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.control.body_dynamics import BodyDynamics, Directions, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
-from humanwalk.control.rotation import Vector, rotation_vector
-from humanwalk.control.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
+from humanwalk.numerics import Array, Indices
+from humanwalk.numerics.rotation import Vector, rotation_vector
 from humanwalk.quantity import quantity
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int_]
+from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 
 FREE = np.array(((-1e4,), (1e4,)))
 """Bounds of an acceleration that has none [rad/s2, m/s2]."""

@@ -2,7 +2,7 @@
 
 from pydrake.systems.framework import Diagram
 
-from humanwalk.diagrams.balanced_walker import make_balanced_walker
+from humanwalk.choices.balanced import make_balanced_walker
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.scenario import Scenario

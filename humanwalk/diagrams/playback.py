@@ -6,15 +6,15 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
-from humanwalk.diagrams.followed import followed_motion
-from humanwalk.diagrams.ground import add_level_ground
-from humanwalk.diagrams.reference import add_walking_reference
-from humanwalk.diagrams.start import require_reachable
+from humanwalk.choices.reference import add_walking_reference
+from humanwalk.choices.start import require_reachable
+from humanwalk.motion.followed import followed_motion
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
 from humanwalk.systems.posture_interpolator import PostureInterpolator
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
+from humanwalk.terrain.floor import add_level_ground
 
 
 def make_playback(scenario: Scenario) -> Diagram:
@@ -49,28 +49,28 @@ def make_playback(scenario: Scenario) -> Diagram:
 
     if scenario.follow.file:
         source = builder.AddNamedSystem("recording", RecordedPostureSource(followed_motion(scenario)))
-        pelvis, desired_state = source.get_pelvis_reference_output_port(), source.get_desired_state_output_port()
+        pelvis, desired_state = source.GetOutputPort("pelvis_reference"), source.GetOutputPort("desired_state")
     else:
         reference = add_walking_reference(builder, scenario)
         solver = reference.inverse_kinematics
-        builder.Connect(reference.gait.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
-        builder.Connect(reference.arms.get_posture_output_port(), solver.get_posture_input_port())
-        pelvis = reference.gait.get_pelvis_reference_output_port()
+        builder.Connect(reference.gait.GetOutputPort("sole_targets"), solver.GetInputPort("sole_targets"))
+        builder.Connect(reference.arms.GetOutputPort("posture"), solver.GetInputPort("posture"))
+        pelvis = reference.gait.GetOutputPort("pelvis_reference")
         interpolator = builder.AddNamedSystem("interpolator", PostureInterpolator(plant.num_actuators()))
-        builder.Connect(solver.get_previous_state_output_port(), interpolator.get_previous_state_input_port())
-        builder.Connect(solver.get_previous_time_output_port(), interpolator.get_previous_time_input_port())
-        builder.Connect(solver.get_desired_state_output_port(), interpolator.get_next_state_input_port())
-        builder.Connect(solver.get_sample_time_output_port(), interpolator.get_next_time_input_port())
-        desired_state = interpolator.get_desired_state_output_port()
-        builder.ExportOutput(solver.get_status_output_port(), "ik_status")
-    builder.Connect(pelvis, state.get_pelvis_reference_input_port())
-    builder.Connect(desired_state, state.get_desired_state_input_port())
-    builder.Connect(state.get_state_output_port(), body.get_state_input_port())
-    builder.Connect(state.get_state_output_port(), to_pose.get_input_port())
+        builder.Connect(solver.GetOutputPort("previous_state"), interpolator.GetInputPort("previous_state"))
+        builder.Connect(solver.GetOutputPort("previous_time"), interpolator.GetInputPort("previous_time"))
+        builder.Connect(solver.GetOutputPort("desired_state"), interpolator.GetInputPort("next_state"))
+        builder.Connect(solver.GetOutputPort("sample_time"), interpolator.GetInputPort("next_time"))
+        desired_state = interpolator.GetOutputPort("desired_state")
+        builder.ExportOutput(solver.GetOutputPort("status"), "ik_status")
+    builder.Connect(pelvis, state.GetInputPort("pelvis_reference"))
+    builder.Connect(desired_state, state.GetInputPort("desired_state"))
+    builder.Connect(state.GetOutputPort("state"), body.GetInputPort("state"))
+    builder.Connect(state.GetOutputPort("state"), to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))
-    builder.ExportOutput(state.get_state_output_port(), "state")
-    builder.ExportOutput(body.get_soles_output_port(), "soles")
-    builder.ExportOutput(body.get_com_output_port(), "com")
+    builder.ExportOutput(state.GetOutputPort("state"), "state")
+    builder.ExportOutput(body.GetOutputPort("soles"), "soles")
+    builder.ExportOutput(body.GetOutputPort("com"), "com")
     builder.ExportOutput(desired_state, "desired_state")
     builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
     diagram = builder.Build()

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from pydrake.multibody.tree import UniformGravityFieldElement
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
+from humanwalk.body.joint_map import base_first_mass_matrix
 from humanwalk.body.plant import Subject
+from humanwalk.choices.contact import FootContact, add_foot_contact, connect_spatial_forces
+from humanwalk.choices.reference import add_walking_reference
+from humanwalk.choices.start import require_reachable, start_positions
+from humanwalk.choices.world import HumanPlant, add_human_plant
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
-from humanwalk.control.joint_map import base_first_mass_matrix
-from humanwalk.control.stability import round_down
-from humanwalk.diagrams.followed import followed_motion
-from humanwalk.diagrams.foot_contact import FootContact, add_foot_contact, connect_spatial_forces
-from humanwalk.diagrams.human_plant import HumanPlant, add_human_plant
-from humanwalk.diagrams.reference import add_walking_reference
-from humanwalk.diagrams.start import require_reachable, start_positions
+from humanwalk.motion.followed import followed_motion
+from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.balance_support import BalanceSupport
@@ -73,28 +73,28 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
     feet = add_foot_contact(builder, scenario, human)
     connect_spatial_forces(builder, human, feet.spatial_forces)
-    builder.Connect(plant.get_state_output_port(), body.get_state_input_port())
+    builder.Connect(plant.get_state_output_port(), body.GetInputPort("state"))
 
     if scenario.follow.file:
         reference = _add_recording(builder, scenario, human, bank)
     else:
         reference = _add_gait(builder, scenario, human, bank, body, feet)
-    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
-    builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
-    builder.ExportInput(bank.get_feedforward_input_port(), "feedforward")
-    actuation = bank.get_actuation_output_port()
+    builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
+    builder.Connect(plant.get_net_actuation_output_port(), bank.GetInputPort("net_actuation"))
+    builder.ExportInput(bank.GetInputPort("feedforward"), "feedforward")
+    actuation = bank.GetOutputPort("actuation")
     if bank.is_linear and reference.samples is not None:
         law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp, human.kd, scenario.simulation.control_period))
-        builder.Connect(reference.samples.get_previous_state_output_port(), law.get_previous_state_input_port())
-        builder.Connect(reference.samples.get_previous_time_output_port(), law.get_previous_time_input_port())
-        builder.Connect(reference.samples.get_desired_state_output_port(), law.get_desired_state_input_port())
-        builder.Connect(plant.get_state_output_port(), law.get_state_input_port())
-        builder.ConnectInput("feedforward", law.get_feedforward_input_port())
-        actuation = law.get_actuation_output_port()
+        builder.Connect(reference.samples.GetOutputPort("previous_state"), law.GetInputPort("previous_state"))
+        builder.Connect(reference.samples.GetOutputPort("previous_time"), law.GetInputPort("previous_time"))
+        builder.Connect(reference.samples.GetOutputPort("desired_state"), law.GetInputPort("desired_state"))
+        builder.Connect(plant.get_state_output_port(), law.GetInputPort("state"))
+        builder.ConnectInput("feedforward", law.GetInputPort("feedforward"))
+        actuation = law.GetOutputPort("actuation")
     builder.Connect(actuation, plant.get_actuation_input_port())
     if scenario.actuators.law == "implicit":
         builder.Connect(
-            bank.get_plant_desired_state_output_port(),
+            bank.GetOutputPort("plant_desired_state"),
             plant.get_desired_state_input_port(human.instance),
         )
 
@@ -105,23 +105,23 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         )
         _require_stable_support(human, parameters)
         support = builder.AddNamedSystem("support", BalanceSupport(plant, parameters))
-        builder.Connect(reference.pelvis, support.get_pelvis_reference_input_port())
-        builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-        builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
-        builder.ExportOutput(support.get_wrench_output_port(), "support_wrench")
+        builder.Connect(reference.pelvis, support.GetInputPort("pelvis_reference"))
+        builder.Connect(plant.get_state_output_port(), support.GetInputPort("state"))
+        builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
+        builder.ExportOutput(support.GetOutputPort("wrench"), "support_wrench")
 
     for port, name in (
         (plant.get_state_output_port(), "state"),
         (human.scene_graph.get_query_output_port(), "query_object"),
         (plant.get_contact_results_output_port(), "contact_results"),
-        (bank.get_torque_output_port(), "torque"),
-        (bank.get_saturated_output_port(), "saturated"),
+        (bank.GetOutputPort("torque"), "torque"),
+        (bank.GetOutputPort("saturated"), "saturated"),
         (plant.get_net_actuation_output_port(), "net_actuation"),
-        (bank.get_held_desired_state_output_port(), "desired_state"),
+        (bank.GetOutputPort("held_desired_state"), "desired_state"),
         (reference.pelvis, "pelvis_reference"),
         *((port, name) for name, port in reference.exports.items()),
-        (body.get_soles_output_port(), "soles"),
-        (body.get_com_output_port(), "com"),
+        (body.GetOutputPort("soles"), "soles"),
+        (body.GetOutputPort("com"), "com"),
         (feet.foot_forces, "foot_forces"),
         (feet.friction_use, "friction_use"),
     ):
@@ -145,8 +145,8 @@ def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlan
     motion = followed_motion(scenario)
     human.plant.SetDefaultPositions(start_positions(scenario, motion))
     source = builder.AddNamedSystem("recording", RecordedPostureSource(motion))
-    builder.Connect(source.get_desired_state_output_port(), bank.get_desired_state_input_port())
-    return _Reference(source.get_pelvis_reference_output_port(), {})
+    builder.Connect(source.GetOutputPort("desired_state"), bank.GetInputPort("desired_state"))
+    return _Reference(source.GetOutputPort("pelvis_reference"), {})
 
 
 def _add_gait(
@@ -163,18 +163,18 @@ def _add_gait(
     walking = add_walking_reference(builder, scenario)
     gait, solver = walking.gait, walking.inverse_kinematics
     exports = {
-        "ik_status": solver.get_status_output_port(),
-        "phase": gait.get_phase_output_port(),
-        "contact_schedule": gait.get_contact_schedule_output_port(),
+        "ik_status": solver.GetOutputPort("status"),
+        "phase": gait.GetOutputPort("phase"),
+        "contact_schedule": gait.GetOutputPort("contact_schedule"),
     }
-    sole_targets = gait.get_sole_targets_output_port()
+    sole_targets = gait.GetOutputPort("sole_targets")
     if scenario.balance.foot_force.enabled:
         level_1 = _add_foot_force_balance(builder, scenario, gait, feet)
-        sole_targets = level_1.get_shifted_targets_output_port()
-        exports["foot_shift"] = level_1.get_shift_output_port()
-    builder.Connect(sole_targets, solver.get_sole_targets_input_port())
+        sole_targets = level_1.GetOutputPort("shifted_targets")
+        exports["foot_shift"] = level_1.GetOutputPort("shift")
+    builder.Connect(sole_targets, solver.GetInputPort("sole_targets"))
 
-    posture = walking.arms.get_posture_output_port()
+    posture = walking.arms.GetOutputPort("posture")
     if scenario.balance.upper_body.enabled:
         level_2 = builder.AddNamedSystem(
             "upper_body_balance",
@@ -184,21 +184,21 @@ def _add_gait(
                 scenario.simulation.control_period,
             ),
         )
-        builder.Connect(posture, level_2.get_posture_input_port())
-        builder.Connect(body.get_soles_output_port(), level_2.get_soles_input_port())
-        builder.Connect(body.get_com_output_port(), level_2.get_com_input_port())
-        exports["alpha"] = level_2.get_alpha_output_port()
-        posture = level_2.get_balanced_posture_output_port()
-    builder.Connect(posture, solver.get_posture_input_port())
+        builder.Connect(posture, level_2.GetInputPort("posture"))
+        builder.Connect(body.GetOutputPort("soles"), level_2.GetInputPort("soles"))
+        builder.Connect(body.GetOutputPort("com"), level_2.GetInputPort("com"))
+        exports["alpha"] = level_2.GetOutputPort("alpha")
+        posture = level_2.GetOutputPort("balanced_posture")
+    builder.Connect(posture, solver.GetInputPort("posture"))
     for name, sample, taken in (
-        ("sample", solver.get_desired_state_output_port(), bank.get_desired_state_input_port()),
-        ("sample_time", solver.get_sample_time_output_port(), bank.get_sample_time_input_port()),
-        ("previous_sample", solver.get_previous_state_output_port(), bank.get_previous_state_input_port()),
-        ("previous_sample_time", solver.get_previous_time_output_port(), bank.get_previous_time_input_port()),
+        ("sample", solver.GetOutputPort("desired_state"), bank.GetInputPort("desired_state")),
+        ("sample_time", solver.GetOutputPort("sample_time"), bank.GetInputPort("sample_time")),
+        ("previous_sample", solver.GetOutputPort("previous_state"), bank.GetInputPort("previous_state")),
+        ("previous_sample_time", solver.GetOutputPort("previous_time"), bank.GetInputPort("previous_time")),
     ):
         builder.Connect(sample, taken)
         exports[name] = sample
-    return _Reference(gait.get_pelvis_reference_output_port(), exports, solver)
+    return _Reference(gait.GetOutputPort("pelvis_reference"), exports, solver)
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:
@@ -229,7 +229,7 @@ def _add_foot_force_balance(
             scenario.simulation.control_period,
         ),
     )
-    builder.Connect(gait.get_sole_targets_output_port(), level_1.get_sole_targets_input_port())
-    builder.Connect(gait.get_contact_schedule_output_port(), level_1.get_contact_schedule_input_port())
-    builder.Connect(feet.foot_forces, level_1.get_foot_forces_input_port())
+    builder.Connect(gait.GetOutputPort("sole_targets"), level_1.GetInputPort("sole_targets"))
+    builder.Connect(gait.GetOutputPort("contact_schedule"), level_1.GetInputPort("contact_schedule"))
+    builder.Connect(feet.foot_forces, level_1.GetInputPort("foot_forces"))
     return level_1

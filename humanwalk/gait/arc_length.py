@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from humanwalk.gait.splines import FloatArray, Spline
+from humanwalk.gait.splines import Spline
+from humanwalk.numerics import Array
 
 _PANELS_PER_SEGMENT = 8
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -36,7 +37,7 @@ class ArcLength:
         """Length of the whole curve."""
         return float(self._s_of_panel[-1])
 
-    def length_to(self, u: npt.ArrayLike) -> FloatArray:
+    def length_to(self, u: npt.ArrayLike) -> Array:
         """Arc length from the start to the global parameter u, shape of u."""
         values = np.asarray(u, dtype=np.float64)
         panel = np.clip(
@@ -47,7 +48,7 @@ class ArcLength:
         start = self._u_of_panel[panel]
         return np.asarray(self._s_of_panel[panel] + self._integral(start, values))
 
-    def parameter_at(self, s: npt.ArrayLike) -> FloatArray:
+    def parameter_at(self, s: npt.ArrayLike) -> Array:
         """Global parameter u at which the arc length is s, shape of s.
 
         Raises ValueError if an s lies outside [0, length].
@@ -81,16 +82,16 @@ class ArcLength:
             u = np.where((newton >= low) & (newton <= high), newton, 0.5 * (low + high))
         return np.asarray(u)
 
-    def position(self, s: npt.ArrayLike) -> FloatArray:
+    def position(self, s: npt.ArrayLike) -> Array:
         """Points at arc length s: shape (..., d)."""
         return self.spline.position(self.parameter_at(s))
 
-    def tangent(self, s: npt.ArrayLike) -> FloatArray:
+    def tangent(self, s: npt.ArrayLike) -> Array:
         """Unit tangents d position / d s: shape (..., d)."""
         direction = self.spline.derivative(self.parameter_at(s))
         return np.asarray(direction / np.linalg.norm(direction, axis=-1, keepdims=True))
 
-    def resample(self, ds: float) -> FloatArray:
+    def resample(self, ds: float) -> Array:
         """Points at s = 0, ds, 2 ds, ... up to the end: shape (n, d).
 
         With ds = speed * time step this is the walk at constant speed that the thesis meant (E16).
@@ -101,10 +102,10 @@ class ArcLength:
         count = int(np.floor(self.length / ds * (1.0 + 1e-12)))
         return self.position(np.minimum(np.arange(count + 1) * ds, self.length))
 
-    def _speed(self, u: FloatArray) -> FloatArray:
+    def _speed(self, u: Array) -> Array:
         return np.asarray(np.linalg.norm(self.spline.derivative(u), axis=-1))
 
-    def _integral(self, start: FloatArray, stop: FloatArray) -> FloatArray:
+    def _integral(self, start: Array, stop: Array) -> Array:
         half = 0.5 * (stop - start)
         u = start[..., None] + half[..., None] * (_NODES + 1.0)
         return np.asarray(half * (self._speed(u) @ _WEIGHTS))

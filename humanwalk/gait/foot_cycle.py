@@ -19,7 +19,8 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
 from humanwalk.gait.arc_length import ArcLength
-from humanwalk.gait.splines import CubicHermite, FloatArray, hermite_tangents
+from humanwalk.gait.splines import CubicHermite, hermite_tangents
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, check, quantity
 
 SwingLaw = Literal["thesis", "smooth"]
@@ -107,7 +108,7 @@ class SwingCurve:
     the exact law while H is at least L/27.
     """
 
-    def __init__(self, x: FloatArray, z: FloatArray, end_speed: float, law: SwingLaw) -> None:
+    def __init__(self, x: Array, z: Array, end_speed: float, law: SwingLaw) -> None:
         tau = np.linspace(0.0, 1.0, _CELLS + 1)
         exact = thesis_swing if law == "thesis" else smooth_swing
         position, rate = exact(tau, x, z, end_speed)
@@ -134,7 +135,7 @@ class SwingCurve:
         return cell, tau - cell / _CELLS
 
 
-def thesis_swing(tau: FloatArray, x: FloatArray, z: FloatArray, end_speed: float) -> tuple[FloatArray, FloatArray]:
+def thesis_swing(tau: Array, x: Array, z: Array, end_speed: float) -> tuple[Array, Array]:
     """Hermite spline through the points (x, z), walked by arc length; (n, 2) position and slope.
 
     The arc length runs s(tau) with s' = end_speed and s'' = 0 at both ends; monotone whenever the
@@ -153,7 +154,7 @@ def thesis_swing(tau: FloatArray, x: FloatArray, z: FloatArray, end_speed: float
     return curve.spline.position(u), direction * s_rate[:, None]
 
 
-def smooth_swing(tau: FloatArray, x: FloatArray, z: FloatArray, end_speed: float) -> tuple[FloatArray, FloatArray]:
+def smooth_swing(tau: Array, x: Array, z: Array, end_speed: float) -> tuple[Array, Array]:
     """Ours: over ground the foot moves rest to rest by the quintic, and lifts by 64 (tau-tau^2)^3.
 
     Only the ends of x and the height of z are used. Position and slope are (n, 2).
@@ -169,8 +170,8 @@ def smooth_swing(tau: FloatArray, x: FloatArray, z: FloatArray, end_speed: float
 @overload
 def swing_hump(tau: float) -> tuple[float, float]: ...
 @overload
-def swing_hump(tau: FloatArray) -> tuple[FloatArray, FloatArray]: ...
-def swing_hump(tau: float | FloatArray) -> tuple[float | FloatArray, ...]:
+def swing_hump(tau: Array) -> tuple[Array, Array]: ...
+def swing_hump(tau: float | Array) -> tuple[float | Array, ...]:
     """64 (tau - tau^2)^3 and its derivative: 0 to 1 to 0, at rest with no acceleration at both ends."""
     product = tau * (1.0 - tau)
     return 64.0 * product**3, 192.0 * product**2 * (1.0 - 2.0 * tau)
@@ -179,8 +180,8 @@ def swing_hump(tau: float | FloatArray) -> tuple[float | FloatArray, ...]:
 @overload
 def quintic_blend(tau: float) -> tuple[float, float, float]: ...
 @overload
-def quintic_blend(tau: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
-def quintic_blend(tau: float | FloatArray) -> tuple[float | FloatArray, ...]:
+def quintic_blend(tau: Array) -> tuple[Array, Array, Array]: ...
+def quintic_blend(tau: float | Array) -> tuple[float | Array, ...]:
     """10 tau^3 - 15 tau^4 + 6 tau^5 and its first two derivatives: 0 to 1, at rest at both ends."""
     rest = 1.0 - tau
     return (
@@ -240,7 +241,7 @@ class FootCycle:
         drop = self.parameters.toe_drop
         return drop * hump, drop * rate / self._swing_share
 
-    def sample(self, phase: npt.ArrayLike) -> FloatArray:
+    def sample(self, phase: npt.ArrayLike) -> Array:
         """Positions (n, 2) [m] at many phases (n,), for plots."""
         return np.array([self.position(float(value)) for value in np.ravel(phase)])
 

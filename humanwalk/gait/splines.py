@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import BSpline, CubicHermiteSpline, PPoly
 
-FloatArray = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 
-def _checked_points(control_points: npt.ArrayLike, minimum: int) -> FloatArray:
+def _checked_points(control_points: npt.ArrayLike, minimum: int) -> Array:
     points = np.array(control_points, dtype=np.float64)
     if points.ndim != 2 or len(points) < minimum or not np.all(np.isfinite(points)):
         raise ValueError(
@@ -30,7 +30,7 @@ class Spline:
     Lengths have the unit of the control points; u has none.
     """
 
-    def __init__(self, curve: PPoly | BSpline, segments: int, control_points: FloatArray) -> None:
+    def __init__(self, curve: PPoly | BSpline, segments: int, control_points: Array) -> None:
         self._curve = curve
         self.segments = segments
         self.control_points = control_points
@@ -41,14 +41,14 @@ class Spline:
         """Number d of coordinates of a point."""
         return int(self.control_points.shape[1])
 
-    def position(self, u: npt.ArrayLike) -> FloatArray:
+    def position(self, u: npt.ArrayLike) -> Array:
         """Points at the global parameter u: shape (..., d) for u of shape (...).
 
         Raises ValueError if a u lies outside [0, segments].
         """
         return self.derivative(u, order=0)
 
-    def derivative(self, u: npt.ArrayLike, order: int = 1) -> FloatArray:
+    def derivative(self, u: npt.ArrayLike, order: int = 1) -> Array:
         """Derivative of the given order with respect to u: shape (..., d).
 
         At a joint of two segments it is the value of the segment that begins there.
@@ -89,7 +89,7 @@ class CubicHermite(Spline):
         segments = len(knots) - 1
         curve = CubicHermiteSpline(np.arange(segments + 1.0), knots, slopes)
         super().__init__(curve, segments, points)
-        self.coefficients: FloatArray = np.ascontiguousarray(curve.c[::-1].transpose(1, 2, 0))
+        self.coefficients: Array = np.ascontiguousarray(curve.c[::-1].transpose(1, 2, 0))
         """Of the powers 0 to 3 of u within each segment, for each coordinate; shape (segments, d, 4)."""
 
 
@@ -123,7 +123,7 @@ class UniformCubicBSpline(_UniformBSpline):
     degree = 3
 
 
-def hermite_tangents(control_points: npt.ArrayLike, closed: bool = False) -> FloatArray:
+def hermite_tangents(control_points: npt.ArrayLike, closed: bool = False) -> Array:
     """Tangents of appendices A and B, (n, d): 0.5 (P[i+1] - P[i-1]), at open ends 0.5 (difference).
 
     Unit: that of the control points, per segment.
@@ -137,5 +137,5 @@ def hermite_tangents(control_points: npt.ArrayLike, closed: bool = False) -> Flo
     return np.asarray(0.5 * (padded[2:] - padded[:-2]), dtype=np.float64)
 
 
-def _wrapped(points: FloatArray, count: int) -> FloatArray:
+def _wrapped(points: Array, count: int) -> Array:
     return np.concatenate([points, points[:count]])

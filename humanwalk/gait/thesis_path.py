@@ -16,12 +16,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from humanwalk.gait.splines import CubicHermite, FloatArray
+from humanwalk.gait.splines import CubicHermite
+from humanwalk.numerics import Array
 
 LegPath = Literal["forward", "backward"]
 
 
-def forward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> FloatArray:
+def forward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
     """Control points of appendix A: 3 of the start and 13 a cycle, shape (3 + 13 cycles, 2)."""
     L, H = step_length, step_height
     C = L / 18
@@ -44,7 +45,7 @@ def forward_control_points(step_length: float, step_height: float, offset: float
     return np.array(start + cycle * cycles, dtype=np.float64)
 
 
-def backward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> FloatArray:
+def backward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
     """Control points of appendix B: 2 of the start, 12 a cycle and the first of the next one.
 
     Shape (3 + 12 cycles, 2).
@@ -77,9 +78,9 @@ class DenseCurve:
     """
 
     segment: npt.NDArray[np.int64]
-    u: FloatArray
-    points: FloatArray
-    distance: FloatArray
+    u: Array
+    points: Array
+    distance: Array
 
 
 def thesis_curve(path: LegPath, step_length: float, step_height: float, offset: float, du: float = 0.01) -> DenseCurve:

@@ -23,7 +23,7 @@ from humanwalk.gait.foot_cycle import (
     swing_hump,
 )
 from humanwalk.gait.speed_ramp import SpeedRamp
-from humanwalk.gait.splines import FloatArray
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, require_in_range
 
 Side = Literal["Right", "Left"]
@@ -91,7 +91,7 @@ class Footstep:
     """
 
     side: Side
-    position: FloatArray
+    position: Array
     touchdown: float
     lift_off: float
 

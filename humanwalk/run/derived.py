@@ -7,16 +7,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.systems.framework import Diagram, System
 
+from humanwalk.numerics import Array
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
 from humanwalk.systems.foot_force_observer import FootForceObserver, friction_used
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
-
-Array = npt.NDArray[np.float64]
 
 WHEN = "time"
 """Stands for the times of the samples among what signals follow from."""

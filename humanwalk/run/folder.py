@@ -11,24 +11,22 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from humanwalk.files import make_folder, write_text, write_whole
+from humanwalk.measures.gait_measures import gait_measures
+from humanwalk.measures.signals import TIME, column_of, unit_of
+from humanwalk.measures.summary import steady_from, summarize
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
-from humanwalk.run.files import make_folder, write_text, write_whole
-from humanwalk.run.gait_measures import gait_measures
-from humanwalk.run.measures import steady_from, summarize
 from humanwalk.run.provenance import provenance
-from humanwalk.run.signals import TIME, column_of, unit_of
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = npt.NDArray[np.float64]
 
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
@@ -74,12 +72,12 @@ class Run:
 
     @cached_property
     def signals(self) -> pa.Table:
-        """The record; see `humanwalk.run.signals`."""
+        """The record; see `humanwalk.measures.signals`."""
         return pq.read_table(self.path / SIGNALS)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The measures; see `humanwalk.run.measures.summarize`."""
+        """The measures; see `humanwalk.measures.summary.summarize`."""
         summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
         return summary
 
@@ -118,7 +116,7 @@ class Run:
         """
         self.require_physics()
         # Plots draw runs.
-        from humanwalk.run.plots import PLOTS as DRAWINGS
+        from humanwalk.view.plots import PLOTS as DRAWINGS
 
         figure = DRAWINGS[name](self) if name in DRAWINGS else None
         if figure is None:

@@ -12,15 +12,15 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
-from humanwalk.control.joint_map import JointMap
+from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.diagrams.start import start_velocities
+from humanwalk.measures.signals import Recorder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
-from humanwalk.run.replay import add_visualizer
-from humanwalk.run.signals import Recorder
 from humanwalk.scenario import Scenario
+from humanwalk.view.replay import add_visualizer
 
 if TYPE_CHECKING:
     from humanwalk.run.folder import Run
@@ -35,7 +35,7 @@ class Outcome:
 
     Attributes:
         scenario: what was simulated.
-        signals: the record, see `humanwalk.run.signals`.
+        signals: the record, see `humanwalk.measures.signals`.
         end: "completed", or why it ended before: "fell", "not a number", "solver failed: ...", "interrupted";
             "unfinished" at a checkpoint.
         wall_time: time that the simulation took on the clock [s], without building the diagram.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from pydrake.systems.framework import BasicVector, Context, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.gait.arm_swing import ArmSwingParameters, arm_joints, arm_swing
 from humanwalk.gait.walking_gait import WalkingGait
@@ -57,7 +57,3 @@ class ArmSwingSource(LeafSystem):
             gait.phase("Right", t), speed / gait.parameters.walked_stride, speed / full, ramp.acceleration(t) / full
         )
         output.SetFromVector(np.array((1.0, swing, rate)).dot(self._parts))
-
-    def get_posture_output_port(self) -> OutputPort:
-        """Output posture."""
-        return self._posture

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
@@ -11,7 +10,6 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     EventStatus,
-    InputPort,
     LeafSystem,
     OutputPort,
     State,
@@ -19,8 +17,8 @@ from pydrake.systems.framework import (
 )
 
 from humanwalk.body.contact import SolePatch
-from humanwalk.control.asperity import AsperityParameters
-from humanwalk.control.contact_step import (
+from humanwalk.contact.asperity import AsperityParameters
+from humanwalk.contact.contact_step import (
     ContactMemory,
     Contacts,
     ContactStep,
@@ -28,10 +26,9 @@ from humanwalk.control.contact_step import (
     body_mobility,
     mobility_factor,
 )
-from humanwalk.control.ground import Ground
-from humanwalk.control.ground_force import foot_force
-
-Array = npt.NDArray[np.float64]
+from humanwalk.contact.ground_force import foot_force
+from humanwalk.numerics import Array
+from humanwalk.terrain.ground import Ground
 
 
 class AsperityContact(LeafSystem):
@@ -177,39 +174,3 @@ class AsperityContact(LeafSystem):
 
     def _friction_use(self, contacts: Contacts) -> Array:
         return np.array([contacts.friction_use(bodies) for bodies in self._feet])
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self._state
-
-    def get_spatial_forces_output_port(self) -> OutputPort:
-        """Output spatial_forces."""
-        return self._forces_output
-
-    def get_foot_forces_output_port(self) -> OutputPort:
-        """Output foot_forces."""
-        return self._foot_forces_output
-
-    def get_friction_use_output_port(self) -> OutputPort:
-        """Output friction_use."""
-        return self._friction_use_output
-
-    def get_point_forces_output_port(self) -> OutputPort:
-        """Output point_forces."""
-        return self._point_forces_output
-
-    def get_depth_output_port(self) -> OutputPort:
-        """Output depth."""
-        return self._depth_output
-
-    def get_slip_output_port(self) -> OutputPort:
-        """Output slip."""
-        return self._slip_output
-
-    def get_stretch_output_port(self) -> OutputPort:
-        """Output stretch."""
-        return self._stretch_output
-
-    def get_anchors_output_port(self) -> OutputPort:
-        """Output anchors."""
-        return self._anchors_output

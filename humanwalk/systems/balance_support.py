@@ -4,7 +4,7 @@ import numpy as np
 from pydrake.common import RandomDistribution
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable
-from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
     Demultiplexer,
     LinearTransformDensity,
@@ -88,19 +88,3 @@ class BalanceSupport(Diagram):
         builder.ExportOutput(wrench.get_output_port_w_out(), "wrench")
         builder.ExportOutput(force.get_output_port(), "generalized_force")
         builder.BuildInto(self)
-
-    def get_pelvis_reference_input_port(self) -> InputPort:
-        """Input pelvis_reference."""
-        return self.GetInputPort("pelvis_reference")
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self.GetInputPort("state")
-
-    def get_wrench_output_port(self) -> OutputPort:
-        """Output wrench."""
-        return self.GetOutputPort("wrench")
-
-    def get_generalized_force_output_port(self) -> OutputPort:
-        """Output generalized_force."""
-        return self.GetOutputPort("generalized_force")

@@ -3,14 +3,12 @@
 from contextlib import suppress
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, ValueProducer
 
 from humanwalk.body import SIDES
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 
 class BodyObserver(LeafSystem):
@@ -68,15 +66,3 @@ class BodyObserver(LeafSystem):
 
     def _calc_com(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._motion.Eval(context)[1])
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self._state
-
-    def get_soles_output_port(self) -> OutputPort:
-        """Output soles."""
-        return self._soles_output
-
-    def get_com_output_port(self) -> OutputPort:
-        """Output com."""
-        return self._com_output

@@ -1,10 +1,10 @@
 """Diagram: what the walker is asked for."""
 
-from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
-from humanwalk.control.command import CommandParameters, CommandProfile
+from humanwalk.walking.command import CommandParameters, CommandProfile
 
 
 class CommandSource(Diagram):
@@ -30,7 +30,3 @@ class CommandSource(Diagram):
         """The output at a time [s]."""
         command = self._profile.at(time)
         return [command.forward, command.sideways, command.turn]
-
-    def get_command_output_port(self) -> OutputPort:
-        """Output command."""
-        return self.get_output_port()

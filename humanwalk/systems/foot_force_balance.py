@@ -1,15 +1,12 @@
 """LeafSystem: balance level 1 of the thesis, foot targets that follow desired ground forces."""
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.systems.framework import (
     BasicVector,
     Context,
     DiscreteValues,
     EventStatus,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
 from humanwalk.control.balance_levels import (
@@ -17,8 +14,7 @@ from humanwalk.control.balance_levels import (
     desired_foot_forces,
     foot_shift_rate,
 )
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 
 class FootForceBalance(LeafSystem):
@@ -78,23 +74,3 @@ class FootForceBalance(LeafSystem):
         targets[:, 4:7] += shift
         targets[:, 10:] += rate
         output.SetFromVector(targets.ravel())
-
-    def get_sole_targets_input_port(self) -> InputPort:
-        """Input sole_targets."""
-        return self._sole_targets
-
-    def get_contact_schedule_input_port(self) -> InputPort:
-        """Input contact_schedule."""
-        return self._schedule
-
-    def get_foot_forces_input_port(self) -> InputPort:
-        """Input foot_forces."""
-        return self._foot_forces
-
-    def get_shifted_targets_output_port(self) -> OutputPort:
-        """Output shifted_targets."""
-        return self._shifted_output
-
-    def get_shift_output_port(self) -> OutputPort:
-        """Output shift."""
-        return self._shift_output

@@ -3,18 +3,16 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.geometry import SceneGraphInspector
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body import SIDES
 from humanwalk.body.contact import FRICTION
-from humanwalk.body.groups import FOOT_BODIES
-from humanwalk.control.ground_force import foot_force, friction_use
-
-Array = npt.NDArray[np.float64]
+from humanwalk.body.limbs import LEGS
+from humanwalk.contact.ground_force import foot_force, friction_use
+from humanwalk.numerics import Array
 
 
 class FootForceObserver(LeafSystem):
@@ -38,7 +36,7 @@ class FootForceObserver(LeafSystem):
         self._foot: dict[tuple[int, int], tuple[int, float]] = {}
         world = int(plant.world_body().index())
         for place, side in enumerate(SIDES):
-            for name in FOOT_BODIES[side]:
+            for name in LEGS[side].foot_bodies:
                 of_foot = int(plant.GetBodyByName(name).index())
                 self._foot |= {(world, of_foot): (place, 1.0), (of_foot, world): (place, -1.0)}
         self._body_of_geometry = {
@@ -84,18 +82,6 @@ class FootForceObserver(LeafSystem):
 
     def _calc_friction_use(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(friction_used(self._output.Eval(context)))
-
-    def get_contact_results_input_port(self) -> InputPort:
-        """Input contact_results."""
-        return self._contacts
-
-    def get_foot_forces_output_port(self) -> OutputPort:
-        """Output foot_forces."""
-        return self._output
-
-    def get_friction_use_output_port(self) -> OutputPort:
-        """Output friction_use."""
-        return self._friction_use_output
 
 
 def friction_used(foot_forces: Array) -> list[float]:

@@ -9,17 +9,15 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import (
     Context,
     EventStatus,
-    InputPort,
     LeafSystem,
-    OutputPort,
     State,
 )
 
 from humanwalk.body import SIDES, Side
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.command import Command
-from humanwalk.control.step_planner import PlannerState, StepPlanner, StepPlannerParameters
-from humanwalk.control.walking_reference import (
+from humanwalk.walking.command import Command
+from humanwalk.walking.step_planner import PlannerState, StepPlanner, StepPlannerParameters
+from humanwalk.walking.walking_reference import (
     FootTask,
     Phase,
     WalkingReference,
@@ -130,34 +128,6 @@ class GaitPlanner(LeafSystem):
             share = min(0.5 * reference.phase_time / self._step_duration, 0.5)
             phases = {planned.stance: share, other(planned.stance): share + 0.5}
         return [phases[side] for side in SIDES]
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self._state
-
-    def get_foot_forces_input_port(self) -> InputPort:
-        """Input foot_forces."""
-        return self._foot_forces
-
-    def get_command_input_port(self) -> InputPort:
-        """Input command."""
-        return self._command
-
-    def get_plan_output_port(self) -> OutputPort:
-        """Output plan."""
-        return self._plan_output
-
-    def get_phase_output_port(self) -> OutputPort:
-        """Output phase."""
-        return self._phase_output
-
-    def get_contact_schedule_output_port(self) -> OutputPort:
-        """Output contact_schedule."""
-        return self._schedule_output
-
-    def get_balance_output_port(self) -> OutputPort:
-        """Output balance."""
-        return self._balance_output
 
 
 def _schedule(reference: WalkingReference) -> list[float]:

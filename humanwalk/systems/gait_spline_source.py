@@ -9,14 +9,13 @@ import numpy.typing as npt
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from pydrake.polynomial import Polynomial
-from pydrake.systems.framework import BasicVector, Context, Diagram, DiagramBuilder, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, Diagram, DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
 from humanwalk.body import SIDES, Skeleton
 from humanwalk.gait.walking_gait import PELVIS_DEGREE, FootTarget, PelvisTarget, WalkingGait
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 FOREVER = 1e6
 """Time at which the pelvis stops [s]; no simulation lasts that long."""
@@ -59,22 +58,6 @@ class GaitSplineSource(Diagram):
     def schedule(self, time: float) -> list[float]:
         """The output contact_schedule at a time [s]."""
         return _schedule(self._gait, time)
-
-    def get_sole_targets_output_port(self) -> OutputPort:
-        """Output sole_targets."""
-        return self.GetOutputPort("sole_targets")
-
-    def get_pelvis_reference_output_port(self) -> OutputPort:
-        """Output pelvis_reference."""
-        return self.GetOutputPort("pelvis_reference")
-
-    def get_phase_output_port(self) -> OutputPort:
-        """Output phase."""
-        return self.GetOutputPort("phase")
-
-    def get_contact_schedule_output_port(self) -> OutputPort:
-        """Output contact_schedule."""
-        return self.GetOutputPort("contact_schedule")
 
 
 class GaitFeetSource(LeafSystem):

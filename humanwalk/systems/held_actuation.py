@@ -1,17 +1,14 @@
 """Diagram: the torques of actuators that hold samples, out of Drake's own systems."""
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable, Variable
-from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder, Multiplexer, Saturation, SparseMatrixGain, SymbolicVectorSystem
 from scipy.sparse import csc_matrix
 
-from humanwalk.control.joint_map import JointMap
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int_]
+from humanwalk.body.joint_map import JointMap
+from humanwalk.numerics import Array, Indices
 
 
 class HeldActuation(Diagram):
@@ -84,23 +81,3 @@ class HeldActuation(Diagram):
         builder.ConnectInput("state", damping.get_input_port())
         builder.ExportOutput(torque.get_output_port(), "actuation")
         builder.BuildInto(self)
-
-    def get_desired_state_input_port(self) -> InputPort:
-        """Input desired_state."""
-        return self.GetInputPort("desired_state")
-
-    def get_sample_time_input_port(self) -> InputPort:
-        """Input sample_time."""
-        return self.GetInputPort("sample_time")
-
-    def get_feedforward_input_port(self) -> InputPort:
-        """Input feedforward."""
-        return self.GetInputPort("feedforward")
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self.GetInputPort("state")
-
-    def get_actuation_output_port(self) -> OutputPort:
-        """Output actuation."""
-        return self.GetOutputPort("actuation")

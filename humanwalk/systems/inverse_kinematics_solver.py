@@ -3,21 +3,19 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import LEG_JOINTS, SIDES
+from humanwalk.body.joint_map import JointMap
 from humanwalk.control.inverse_kinematics import (
     InverseKinematicsParameters,
     LegKinematics,
     joint_velocity,
     solve_inverse_kinematics,
 )
-from humanwalk.control.joint_map import JointMap
 from humanwalk.control.revolute_chain import pose_of
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 FIRST_KNEE_BEND = 0.3
 """Bend of the knees from which the first solution starts [rad]."""
@@ -122,31 +120,3 @@ class InverseKinematicsSolver(LeafSystem):
         discrete.set_value(sample_time, np.array([context.get_time() + self._preview]))
         discrete.set_value(status, report)
         return EventStatus.Succeeded()
-
-    def get_sole_targets_input_port(self) -> InputPort:
-        """Input sole_targets."""
-        return self._sole_targets
-
-    def get_posture_input_port(self) -> InputPort:
-        """Input posture."""
-        return self._posture
-
-    def get_desired_state_output_port(self) -> OutputPort:
-        """Output desired_state."""
-        return self._desired_state_output
-
-    def get_sample_time_output_port(self) -> OutputPort:
-        """Output sample_time."""
-        return self._sample_time_output
-
-    def get_previous_state_output_port(self) -> OutputPort:
-        """Output previous_state."""
-        return self._previous_state_output
-
-    def get_previous_time_output_port(self) -> OutputPort:
-        """Output previous_time."""
-        return self._previous_time_output
-
-    def get_status_output_port(self) -> OutputPort:
-        """Output status."""
-        return self._status_output

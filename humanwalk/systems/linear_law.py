@@ -1,13 +1,12 @@
 """Diagram: torques of a linear law between samples, without Python."""
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common import RandomDistribution
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.symbolic import MakeVectorContinuousVariable, Variable
 from pydrake.symbolic import max as max_
 from pydrake.symbolic import min as min_
-from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
     LinearTransformDensity,
     Multiplexer,
@@ -17,10 +16,9 @@ from pydrake.systems.primitives import (
 )
 from scipy.sparse import csc_matrix
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.control.hermite import ROWS, basis, weights
-from humanwalk.control.joint_map import JointMap
-
-Array = npt.NDArray[np.float64]
+from humanwalk.numerics import Array
 
 
 class LinearLaw(Diagram):
@@ -75,27 +73,3 @@ class LinearLaw(Diagram):
         builder.ExportInput(fed.get_input_port(), "feedforward")
         builder.ExportOutput(torque.get_output_port_w_out(), "actuation")
         builder.BuildInto(self)
-
-    def get_previous_state_input_port(self) -> InputPort:
-        """Input previous_state."""
-        return self.GetInputPort("previous_state")
-
-    def get_desired_state_input_port(self) -> InputPort:
-        """Input desired_state."""
-        return self.GetInputPort("desired_state")
-
-    def get_previous_time_input_port(self) -> InputPort:
-        """Input previous_time."""
-        return self.GetInputPort("previous_time")
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self.GetInputPort("state")
-
-    def get_feedforward_input_port(self) -> InputPort:
-        """Input feedforward."""
-        return self.GetInputPort("feedforward")
-
-    def get_actuation_output_port(self) -> OutputPort:
-        """Output actuation."""
-        return self.GetOutputPort("actuation")

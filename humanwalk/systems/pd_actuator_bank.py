@@ -1,19 +1,17 @@
 """LeafSystem: the PD controllers of all 42 joint actuators."""
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex, PdControllerGains
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, ValueProducer
 
+from humanwalk.body.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.control.hermite import HermitePiece
-from humanwalk.control.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.control.pd_control import PdLaw, largest_explicit_step, largest_semi_implicit_step, pd_torque
-from humanwalk.control.stability import round_down
+from humanwalk.numerics import Array
+from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
-
-Array = npt.NDArray[np.float64]
 
 
 def install_gains(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw = "implicit") -> None:
@@ -252,54 +250,6 @@ class PdActuatorBank(LeafSystem):
     def limited(self) -> bool:
         """Whether any joint has an effort limit."""
         return self._limited
-
-    def get_desired_state_input_port(self) -> InputPort:
-        """Input desired_state."""
-        return self._desired
-
-    def get_sample_time_input_port(self) -> InputPort:
-        """Input sample_time."""
-        return self._sample_time
-
-    def get_previous_state_input_port(self) -> InputPort:
-        """Input previous_state."""
-        return self._previous
-
-    def get_previous_time_input_port(self) -> InputPort:
-        """Input previous_time."""
-        return self._previous_time
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self._state
-
-    def get_net_actuation_input_port(self) -> InputPort:
-        """Input net_actuation."""
-        return self._net_actuation
-
-    def get_feedforward_input_port(self) -> InputPort:
-        """Input feedforward."""
-        return self._feedforward
-
-    def get_held_desired_state_output_port(self) -> OutputPort:
-        """Output held_desired_state."""
-        return self._held_output
-
-    def get_plant_desired_state_output_port(self) -> OutputPort:
-        """Output plant_desired_state (implicit law only)."""
-        return self._plant_desired_output
-
-    def get_actuation_output_port(self) -> OutputPort:
-        """Output actuation."""
-        return self._actuation_output
-
-    def get_torque_output_port(self) -> OutputPort:
-        """Output torque."""
-        return self._torque_output
-
-    def get_saturated_output_port(self) -> OutputPort:
-        """Output saturated."""
-        return self._saturated_output
 
 
 def _piece_of(

@@ -2,9 +2,9 @@
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from humanwalk.control.joint_map import JointMap
+from humanwalk.body.joint_map import JointMap
 
 
 class PlaybackState(LeafSystem):
@@ -40,15 +40,3 @@ class PlaybackState(LeafSystem):
         state[self._joints.q] = angles
         state[self._rates] = rates
         output.SetFromVector(state)
-
-    def get_pelvis_reference_input_port(self) -> InputPort:
-        """Input pelvis_reference."""
-        return self._reference
-
-    def get_desired_state_input_port(self) -> InputPort:
-        """Input desired_state."""
-        return self._desired
-
-    def get_state_output_port(self) -> OutputPort:
-        """Output state."""
-        return self._output

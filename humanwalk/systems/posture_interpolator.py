@@ -1,7 +1,7 @@
 """LeafSystem: desired joint angles between two solutions of the inverse kinematics."""
 
 from pydrake.common.value import Value
-from pydrake.systems.framework import BasicVector, Context, InputPort, LeafSystem, OutputPort, ValueProducer
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, ValueProducer
 
 from humanwalk.control.hermite import HermitePiece
 
@@ -51,23 +51,3 @@ class PostureInterpolator(LeafSystem):
     def _calc(self, context: Context, output: BasicVector) -> None:
         piece: HermitePiece = self._piece.Eval(context)
         output.SetFromVector(piece.at(context.get_time()))
-
-    def get_previous_state_input_port(self) -> InputPort:
-        """Input previous_state."""
-        return self._inputs["previous_state"]
-
-    def get_previous_time_input_port(self) -> InputPort:
-        """Input previous_time."""
-        return self._inputs["previous_time"]
-
-    def get_next_state_input_port(self) -> InputPort:
-        """Input next_state."""
-        return self._inputs["next_state"]
-
-    def get_next_time_input_port(self) -> InputPort:
-        """Input next_time."""
-        return self._inputs["next_time"]
-
-    def get_desired_state_output_port(self) -> OutputPort:
-        """Output desired_state."""
-        return self._output

@@ -7,9 +7,9 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
-from pydrake.systems.framework import AbstractParameterIndex, BasicVector, Context, LeafSystem, OutputPort
+from pydrake.systems.framework import AbstractParameterIndex, BasicVector, Context, LeafSystem
 
-from humanwalk.control.push import Push, PushParameters, pushes_of
+from humanwalk.walking.push import Push, PushParameters, pushes_of
 
 
 @dataclass(frozen=True)
@@ -77,11 +77,3 @@ class PushSource(LeafSystem):
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(sum((np.array(push.force) for push in self._acting(context)), np.zeros(3)))
-
-    def get_spatial_forces_output_port(self) -> OutputPort:
-        """Output spatial_forces."""
-        return self._forces_output
-
-    def get_force_output_port(self) -> OutputPort:
-        """Output force."""
-        return self._force_output

@@ -1,13 +1,13 @@
 """LeafSystem: joint angles and pelvis path out of a recording."""
 
 import numpy as np
-import numpy.typing as npt
-from pydrake.systems.framework import LeafSystem, OutputPort
+from pydrake.systems.framework import LeafSystem
 
-from humanwalk.gait.recorded_motion import PelvisMotion, RecordedMotion
+from humanwalk.motion.recorded_motion import PelvisMotion, RecordedMotion
+from humanwalk.numerics import Array
 
 
-def _floating_base(pelvis: PelvisMotion) -> npt.NDArray[np.float64]:
+def _floating_base(pelvis: PelvisMotion) -> Array:
     X_WP, V_WP = pelvis
     return np.concatenate((X_WP.rotation().ToQuaternion().wxyz(), X_WP.translation(), V_WP.get_coeffs()))
 
@@ -37,11 +37,3 @@ class RecordedPostureSource(LeafSystem):
             lambda context, output: output.SetFromVector(_floating_base(motion.pelvis(context.get_time()))),
             prerequisites_of_calc=when,
         )
-
-    def get_desired_state_output_port(self) -> OutputPort:
-        """Output desired_state."""
-        return self._desired_state
-
-    def get_pelvis_reference_output_port(self) -> OutputPort:
-        """Output pelvis_reference."""
-        return self._pelvis_reference

@@ -3,21 +3,16 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.systems.framework import (
     BasicVector,
     Context,
     DiscreteValues,
     EventStatus,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
-from humanwalk.body.groups import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
+from humanwalk.body.limbs import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
 from humanwalk.control.balance_levels import UpperBodyBalanceParameters, lean_angles
-
-Array = npt.NDArray[np.float64]
 
 
 class UpperBodyBalance(LeafSystem):
@@ -79,23 +74,3 @@ class UpperBodyBalance(LeafSystem):
         posture[: self._n] += self._bend @ alpha
         posture[self._n :] += self._bend @ rate
         output.SetFromVector(posture)
-
-    def get_posture_input_port(self) -> InputPort:
-        """Input posture."""
-        return self._posture
-
-    def get_soles_input_port(self) -> InputPort:
-        """Input soles."""
-        return self._soles
-
-    def get_com_input_port(self) -> InputPort:
-        """Input com."""
-        return self._com
-
-    def get_balanced_posture_output_port(self) -> OutputPort:
-        """Output balanced_posture."""
-        return self._posture_output
-
-    def get_alpha_output_port(self) -> OutputPort:
-        """Output alpha."""
-        return self._alpha_output

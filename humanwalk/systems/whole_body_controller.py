@@ -3,18 +3,15 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.walking_reference import WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
 from humanwalk.systems.gait_planner import Plan
-
-Array = npt.NDArray[np.float64]
+from humanwalk.walking.walking_reference import WalkingReference
 
 STATUS = ("solved", "failures", "failures_in_a_row")
 
@@ -115,27 +112,3 @@ class WholeBodyController(LeafSystem):
             angle[elbow] += 0.5 * max(swing, 0.0)
             angle[toes], rate[toes] = foot.toes
         return Posture(angle, rate)
-
-    def get_state_input_port(self) -> InputPort:
-        """Input state."""
-        return self._state
-
-    def get_plan_input_port(self) -> InputPort:
-        """Input plan."""
-        return self._plan
-
-    def get_torque_output_port(self) -> OutputPort:
-        """Output torque."""
-        return self._torque_output
-
-    def get_desired_state_output_port(self) -> OutputPort:
-        """Output desired_state."""
-        return self._desired_output
-
-    def get_sample_time_output_port(self) -> OutputPort:
-        """Output sample_time."""
-        return self._time_output
-
-    def get_status_output_port(self) -> OutputPort:
-        """Output status."""
-        return self._status_output

@@ -1,10 +1,10 @@
 import pytest
 
-from humanwalk.run.browser import find_browser
 from humanwalk.run.folder import REPLAY, write_run
-from humanwalk.run.replay import make_meshcat, static_page
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.view.browser import find_browser
+from humanwalk.view.replay import make_meshcat, static_page
 
 DURATION = 0.5
 """Of the run that is looked at [s]: one step."""

@@ -6,9 +6,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from humanwalk.run.replay import make_meshcat, static_page
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.view.replay import make_meshcat, static_page
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 

@@ -4,9 +4,9 @@ from PIL import Image
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.plant import Subject, kinematics_plant
-from humanwalk.run.browser import Camera, open_stage
-from humanwalk.run.signals import TIME, matrix, signal_columns
-from humanwalk.run.video import camera
+from humanwalk.measures.signals import TIME, matrix, signal_columns
+from humanwalk.view.browser import Camera, open_stage
+from humanwalk.view.video import camera
 
 pytestmark = pytest.mark.browser
 

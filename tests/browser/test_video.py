@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 from humanwalk.quantity import ParameterError
-from humanwalk.run.browser import open_stage
-from humanwalk.run.video import VideoParameters, find_ffmpeg, record_video, write_snapshot
+from humanwalk.view.browser import open_stage
+from humanwalk.view.video import VideoParameters, find_ffmpeg, record_video, write_snapshot
 
 pytestmark = pytest.mark.browser
 
@@ -98,7 +98,7 @@ def test_a_browser_that_is_none_is_named(short_run, tmp_path, monkeypatch):
 
 
 def test_a_browser_without_webgl_is_told_from_one_with(short_run, tmp_path, monkeypatch):
-    monkeypatch.setattr("humanwalk.run.browser.FLAGS", ("--disable-gpu", "--disable-3d-apis"))
+    monkeypatch.setattr("humanwalk.view.browser.FLAGS", ("--disable-gpu", "--disable-3d-apis"))
     with pytest.raises(ParameterError, match=r"no WebGL.*install chromium"):
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL)
     assert list(tmp_path.iterdir()) == []

@@ -7,9 +7,9 @@ import pytest
 
 from humanwalk.body import contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.swing_foot import PlanarMotion
-from humanwalk.control.walking_reference import FootReference, FootTask, Phase, WalkingReference
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp
+from humanwalk.walking.swing_foot import PlanarMotion
+from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
 PARAMETERS = WholeBodyParameters()
 WEIGHT = 70.0 * 9.81

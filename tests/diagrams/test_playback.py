@@ -7,9 +7,9 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body import SIDES
+from humanwalk.choices.reference import make_gait
 from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.diagrams.playback import make_playback
-from humanwalk.diagrams.reference import make_gait
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, shipped_scenarios
 

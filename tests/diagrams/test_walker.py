@@ -117,7 +117,7 @@ def test_feedforward_needs_no_connection_and_adds_torque_when_connected():
             walker.GetInputPort("feedforward").FixValue(context, np.full(N, extra))
         simulator.Initialize()
         bank = walker.GetSubsystemByName("actuators")
-        torques.append(bank.get_actuation_output_port().Eval(bank.GetMyContextFromRoot(context)))
+        torques.append(bank.GetOutputPort("actuation").Eval(bank.GetMyContextFromRoot(context)))
     np.testing.assert_allclose(torques[1] - torques[0], 3.0)
 
 

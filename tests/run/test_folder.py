@@ -6,9 +6,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from humanwalk.measures.signals import TIME, signal_columns
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder, write_run
-from humanwalk.run.signals import TIME, signal_columns
 from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import load_scenario
 

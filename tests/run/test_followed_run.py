@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from humanwalk.body.opensim_names import COORDINATES
-from humanwalk.diagrams.followed import NEEDED, followed_motion
-from humanwalk.gait.motion_table import MotionTable, storage_text
+from humanwalk.cli.main import app, main
+from humanwalk.motion.followed import NEEDED, followed_motion
+from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.quantity import ParameterError
-from humanwalk.run.cli import app, main
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import file_hash, scenario_hash
 from humanwalk.run.reproduce import reproduce

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
+from humanwalk.cli.main import app
 from humanwalk.quantity import ParameterError
-from humanwalk.run.cli import app
 from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run
 from humanwalk.run.provenance import scenario_hash, signals_hash, versions
 from humanwalk.run.reproduce import reproduce

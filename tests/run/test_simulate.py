@@ -8,13 +8,13 @@ import pytest
 
 from humanwalk.body.contact import FRICTION, SOLE_PARTS
 from humanwalk.body.plant import Subject, kinematics_plant
-from humanwalk.diagrams.start import start_velocities
+from humanwalk.choices.start import start_velocities
+from humanwalk.cli.walk import summary_table
 from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.measures.summary import SHORTEST_PHASE_S, summarize, touchdowns
 from humanwalk.quantity import ParameterError
-from humanwalk.run.measures import SHORTEST_PHASE_S, summarize, touchdowns
-from humanwalk.run.signals import TIME, matrix
 from humanwalk.run.simulate import prepare, simulate
-from humanwalk.run.walk import summary_table
 from humanwalk.scenario import load_scenario
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 

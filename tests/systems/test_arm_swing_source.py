@@ -18,7 +18,7 @@ times = st.floats(0.0, 5.0)
 def posture_of(source, t):
     context = source.CreateDefaultContext()
     context.SetTime(t)
-    return np.split(source.get_posture_output_port().Eval(context), 2)
+    return np.split(source.GetOutputPort("posture").Eval(context), 2)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def source(joints, gait):
 def test_ports(source):
     assert source.num_input_ports() == 0
     assert source.num_output_ports() == 1
-    port = source.get_posture_output_port()
+    port = source.GetOutputPort("posture")
     assert (port.get_name(), port.size()) == ("posture", 84)
 
 

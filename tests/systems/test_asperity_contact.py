@@ -13,10 +13,10 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.contact import SolePatch, rectangle_patch
-from humanwalk.control.asperity import AsperityParameters
-from humanwalk.control.contact_step import LONGEST_STEP
-from humanwalk.control.ground import HeightGround, PlaneGround
+from humanwalk.contact.asperity import AsperityParameters
+from humanwalk.contact.contact_step import LONGEST_STEP
 from humanwalk.systems.asperity_contact import AsperityContact
+from humanwalk.terrain.ground import HeightGround, PlaneGround
 
 LAW = AsperityParameters()
 GRAVITY = 9.81
@@ -45,10 +45,8 @@ class Block:
                 0.01,
             )
         )
-        builder.Connect(self.plant.get_state_output_port(), self.contact.get_state_input_port())
-        builder.Connect(
-            self.contact.get_spatial_forces_output_port(), self.plant.get_applied_spatial_force_input_port()
-        )
+        builder.Connect(self.plant.get_state_output_port(), self.contact.GetInputPort("state"))
+        builder.Connect(self.contact.GetOutputPort("spatial_forces"), self.plant.get_applied_spatial_force_input_port())
         self.simulator = Simulator(builder.Build())
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
         p_WB = self.R @ np.array([0.0, 0.0, 0.5 * SIZE[2] + height])
@@ -93,7 +91,7 @@ def test_ports():
         assert getattr(contact, f"get_{name}_output_port")().get_name() == name
         assert name in AsperityContact.__doc__
     assert contact.num_input_ports() == 1
-    assert contact.get_state_input_port().size() == 13
+    assert contact.GetInputPort("state").size() == 13
 
 
 def test_the_force_on_the_body_is_what_is_shown():

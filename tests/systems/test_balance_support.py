@@ -38,25 +38,25 @@ def context_of(support, plant, X_WP, V_WP):
     v[start : start + 6] = V_WP
     plant.SetVelocities(plant_context, v)
     context = support.CreateDefaultContext()
-    support.get_pelvis_reference_input_port().FixValue(context, REFERENCE)
-    support.get_state_input_port().FixValue(context, plant.GetPositionsAndVelocities(plant_context))
+    support.GetInputPort("pelvis_reference").FixValue(context, REFERENCE)
+    support.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(plant_context))
     return context
 
 
 def test_ports(support, plant):
     names = [support.get_input_port(i).get_name() for i in range(support.num_input_ports())]
     assert sorted(names) == ["pelvis_reference", "state"]
-    assert support.get_pelvis_reference_input_port().size() == 13
-    assert support.get_state_input_port().size() == plant.num_multibody_states()
-    port = support.get_wrench_output_port()
+    assert support.GetInputPort("pelvis_reference").size() == 13
+    assert support.GetInputPort("state").size() == plant.num_multibody_states()
+    port = support.GetOutputPort("wrench")
     assert (port.get_name(), port.size()) == ("wrench", 6)
-    port = support.get_generalized_force_output_port()
+    port = support.GetOutputPort("generalized_force")
     assert (port.get_name(), port.size()) == ("generalized_force", plant.num_velocities())
 
 
 def test_no_wrench_on_the_reference(support, plant):
     context = context_of(support, plant, X_REFERENCE, V_REFERENCE)
-    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), 0.0, atol=1e-9)
+    np.testing.assert_allclose(support.GetOutputPort("wrench").Eval(context), 0.0, atol=1e-9)
 
 
 def test_the_wrench_is_the_law_of_the_pelvis_state(support, plant):
@@ -64,7 +64,7 @@ def test_the_wrench_is_the_law_of_the_pelvis_state(support, plant):
     V_WP = np.array([0.3, -0.2, 0.1, 1.2, 0.2, 0.0])
     expected = support_wrench(floating_base(X_WP), V_WP, REFERENCE, PARAMETERS)
     context = context_of(support, plant, X_WP, V_WP)
-    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), expected, rtol=1e-9)
+    np.testing.assert_allclose(support.GetOutputPort("wrench").Eval(context), expected, rtol=1e-9)
 
 
 def test_the_generalized_force_is_the_wrench_on_the_pelvis_at_its_origin(support, plant):
@@ -81,18 +81,18 @@ def test_the_generalized_force_is_the_wrench_on_the_pelvis_at_its_origin(support
         plant.world_frame(),
         plant.world_frame(),
     )
-    wrench = support.get_wrench_output_port().Eval(context)
-    np.testing.assert_allclose(support.get_generalized_force_output_port().Eval(context), J.T @ wrench, atol=1e-9)
+    wrench = support.GetOutputPort("wrench").Eval(context)
+    np.testing.assert_allclose(support.GetOutputPort("generalized_force").Eval(context), J.T @ wrench, atol=1e-9)
 
 
 def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
     context = context_of(support, plant, RigidTransform([1.1, 0.4, 1.0]), np.zeros(6))
-    expected = support.get_wrench_output_port().Eval(context)
-    state = support.get_state_input_port().Eval(context)
+    expected = support.GetOutputPort("wrench").Eval(context)
+    state = support.GetInputPort("state").Eval(context)
     start = plant.GetBodyByName("Pelvis").floating_positions_start()
     state[start : start + 4] *= 1.0001
-    support.get_state_input_port().FixValue(context, state)
-    np.testing.assert_allclose(support.get_wrench_output_port().Eval(context), expected, rtol=1e-9)
+    support.GetInputPort("state").FixValue(context, state)
+    np.testing.assert_allclose(support.GetOutputPort("wrench").Eval(context), expected, rtol=1e-9)
 
 
 def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
@@ -108,9 +108,9 @@ def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
     reference = np.zeros(13)
     reference[0] = 1.0
     source = builder.AddSystem(ConstantVectorSource(reference))
-    builder.Connect(source.get_output_port(), support.get_pelvis_reference_input_port())
-    builder.Connect(plant.get_state_output_port(), support.get_state_input_port())
-    builder.Connect(support.get_generalized_force_output_port(), plant.get_applied_generalized_force_input_port())
+    builder.Connect(source.get_output_port(), support.GetInputPort("pelvis_reference"))
+    builder.Connect(plant.get_state_output_port(), support.GetInputPort("state"))
+    builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(1.5)
     X_WP = plant.EvalBodyPoseInWorld(plant.GetMyContextFromRoot(simulator.get_context()), pelvis)

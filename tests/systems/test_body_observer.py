@@ -21,10 +21,10 @@ def observed(observer):
 
     def outputs(state):
         context = observer.CreateDefaultContext()
-        observer.get_state_input_port().FixValue(context, state)
+        observer.GetInputPort("state").FixValue(context, state)
         return (
-            observer.get_soles_output_port().Eval(context),
-            observer.get_com_output_port().Eval(context),
+            observer.GetOutputPort("soles").Eval(context),
+            observer.GetOutputPort("com").Eval(context),
         )
 
     return outputs
@@ -40,9 +40,9 @@ def random_state(plant, rng):
 
 def test_ports(observer, plant):
     assert observer.num_input_ports() == 1
-    assert observer.get_state_input_port().get_name() == "state"
-    assert observer.get_state_input_port().size() == plant.num_multibody_states()
-    for port, name in ((observer.get_soles_output_port(), "soles"), (observer.get_com_output_port(), "com")):
+    assert observer.GetInputPort("state").get_name() == "state"
+    assert observer.GetInputPort("state").size() == plant.num_multibody_states()
+    for port, name in ((observer.GetOutputPort("soles"), "soles"), (observer.GetOutputPort("com"), "com")):
         assert (port.get_name(), port.size()) == (name, 6)
 
 

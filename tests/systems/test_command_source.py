@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.control.command import CommandParameters, CommandPoint, CommandProfile
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.command_source import CommandSource
+from humanwalk.walking.command import CommandParameters, CommandPoint, CommandProfile
 
 WALK = CommandParameters(points=(CommandPoint(1.0, forward=1.0), CommandPoint(6.0, sideways=0.2, turn=0.5)))
 
@@ -15,11 +15,11 @@ def command_at(time, parameters=WALK):
     source = CommandSource(parameters)
     context = source.CreateDefaultContext()
     context.SetTime(time)
-    return source.get_command_output_port().Eval(context)
+    return source.GetOutputPort("command").Eval(context)
 
 
 def test_port_name_and_size():
-    port = CommandSource(WALK).get_command_output_port()
+    port = CommandSource(WALK).GetOutputPort("command")
     assert (port.get_name(), port.size()) == ("command", 3)
 
 

@@ -20,29 +20,29 @@ def level():
 
 def simulator_of(level, schedule=(1, 1), vertical=(WEIGHT / 2, WEIGHT / 2)):
     context = level.CreateDefaultContext()
-    level.get_sole_targets_input_port().FixValue(context, TARGETS)
-    level.get_contact_schedule_input_port().FixValue(context, np.array(schedule, dtype=float))
+    level.GetInputPort("sole_targets").FixValue(context, TARGETS)
+    level.GetInputPort("contact_schedule").FixValue(context, np.array(schedule, dtype=float))
     forces = np.zeros((2, 8))
     forces[:, 2] = vertical
     # Centres of pressure and moments are not looked at.
     forces[:, 3:] = 7.0
-    level.get_foot_forces_input_port().FixValue(context, forces.ravel())
+    level.GetInputPort("foot_forces").FixValue(context, forces.ravel())
     return Simulator(level, context)
 
 
 def shift_and_rate(level, simulator):
-    return np.split(level.get_shift_output_port().Eval(simulator.get_context()), 2)
+    return np.split(level.GetOutputPort("shift").Eval(simulator.get_context()), 2)
 
 
 def test_ports(level):
     names = {level.get_input_port(i).get_name() for i in range(level.num_input_ports())}
     assert names == {"sole_targets", "contact_schedule", "foot_forces"}
-    assert level.get_sole_targets_input_port().size() == 26
-    assert level.get_contact_schedule_input_port().size() == 2
-    assert level.get_foot_forces_input_port().size() == 16
-    port = level.get_shift_output_port()
+    assert level.GetInputPort("sole_targets").size() == 26
+    assert level.GetInputPort("contact_schedule").size() == 2
+    assert level.GetInputPort("foot_forces").size() == 16
+    port = level.GetOutputPort("shift")
     assert (port.get_name(), port.size()) == ("shift", 12)
-    port = level.get_shifted_targets_output_port()
+    port = level.GetOutputPort("shifted_targets")
     assert (port.get_name(), port.size()) == ("shifted_targets", 26)
 
 
@@ -53,8 +53,8 @@ def test_with_the_desired_forces_the_plan_passes_unchanged(level, schedule, vert
     simulator = simulator_of(level, schedule, vertical)
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
-    np.testing.assert_array_equal(level.get_shift_output_port().Eval(context), 0.0)
-    np.testing.assert_array_equal(level.get_shifted_targets_output_port().Eval(context), TARGETS)
+    np.testing.assert_array_equal(level.GetOutputPort("shift").Eval(context), 0.0)
+    np.testing.assert_array_equal(level.GetOutputPort("shifted_targets").Eval(context), TARGETS)
 
 
 def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
@@ -73,7 +73,7 @@ def test_shift_and_its_rate_are_added_to_the_plan(level):
     shift, rate = (part.reshape(2, 3) for part in shift_and_rate(level, simulator))
     added = np.zeros((2, 13))
     added[:, 4:7], added[:, 10:] = shift, rate
-    np.testing.assert_allclose(level.get_shifted_targets_output_port().Eval(context), TARGETS + added.ravel())
+    np.testing.assert_allclose(level.GetOutputPort("shifted_targets").Eval(context), TARGETS + added.ravel())
 
 
 def test_the_rate_is_what_the_shift_does_until_the_next_update(level):

@@ -11,7 +11,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.choices.world import add_human_plant
 from humanwalk.scenario import Scenario, SimulationParameters
 from humanwalk.systems.foot_force_observer import FootForceObserver
 
@@ -25,7 +25,7 @@ def standing(contact, lift=0.0, duration=1.0):
     human = add_human_plant(builder, dataclasses.replace(SCENARIO, contact=contact))
     plant = human.plant
     observer = builder.AddSystem(FootForceObserver(plant, human.scene_graph.model_inspector()))
-    builder.Connect(plant.get_contact_results_output_port(), observer.get_contact_results_input_port())
+    builder.Connect(plant.get_contact_results_output_port(), observer.GetInputPort("contact_results"))
     desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
     builder.Connect(desired.get_output_port(), plant.get_desired_state_input_port(human.instance))
     simulator = Simulator(builder.Build())
@@ -35,7 +35,7 @@ def standing(contact, lift=0.0, duration=1.0):
     q[pelvis.floating_positions_start() + 6] += lift
     plant.SetPositions(context, q)
     simulator.AdvanceTo(duration)
-    forces = observer.get_foot_forces_output_port().Eval(observer.GetMyContextFromRoot(simulator.get_context()))
+    forces = observer.GetOutputPort("foot_forces").Eval(observer.GetMyContextFromRoot(simulator.get_context()))
     soles = [plant.GetFrameByName(f"{side}Leg_Sole").CalcPoseInWorld(context) for side in ("Right", "Left")]
     return forces.reshape(2, 8), plant.CalcTotalMass(context) * 9.81, soles, plant.GetVelocities(context)
 
@@ -50,13 +50,13 @@ def test_ports(plant):
     human = add_human_plant(builder, SCENARIO)
     observer = FootForceObserver(human.plant, human.scene_graph.model_inspector())
     assert observer.num_input_ports() == 1
-    assert observer.get_contact_results_input_port().get_name() == "contact_results"
-    port = observer.get_foot_forces_output_port()
+    assert observer.GetInputPort("contact_results").get_name() == "contact_results"
+    port = observer.GetOutputPort("foot_forces")
     assert (port.get_name(), port.size()) == ("foot_forces", 16)
-    use = observer.get_friction_use_output_port()
+    use = observer.GetOutputPort("friction_use")
     assert (use.get_name(), use.size()) == ("friction_use", 2)
     context = observer.CreateDefaultContext()
-    observer.get_contact_results_input_port().FixValue(context, Value(ContactResults()))
+    observer.GetInputPort("contact_results").FixValue(context, Value(ContactResults()))
     np.testing.assert_array_equal(port.Eval(context), 0.0)
     np.testing.assert_array_equal(use.Eval(context), 0.0)
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from humanwalk.control.step_planner import StepPlannerParameters
-from humanwalk.control.walking_reference import Phase
 from humanwalk.systems.gait_planner import GaitPlanner, Plan
+from humanwalk.walking.step_planner import StepPlannerParameters
+from humanwalk.walking.walking_reference import Phase
 
 PERIOD = 0.004
 
@@ -19,9 +19,9 @@ def planner(plant):
 def simulator_of(planner, plant, command):
     simulator = Simulator(planner)
     context = simulator.get_mutable_context()
-    planner.get_state_input_port().FixValue(context, plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
-    planner.get_foot_forces_input_port().FixValue(context, np.zeros(16))
-    planner.get_command_input_port().FixValue(context, np.array(command, dtype=float))
+    planner.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
+    planner.GetInputPort("foot_forces").FixValue(context, np.zeros(16))
+    planner.GetInputPort("command").FixValue(context, np.array(command, dtype=float))
     simulator.Initialize()
     return simulator
 
@@ -40,33 +40,33 @@ def test_ports(planner, plant):
 
 def test_before_it_is_initialised_it_has_no_plan_and_both_feet_stand(planner):
     context = planner.CreateDefaultContext()
-    assert planner.get_plan_output_port().Eval(context) == Plan()
-    assert planner.get_contact_schedule_output_port().Eval(context) == pytest.approx([1, 1])
-    assert planner.get_balance_output_port().Eval(context) == pytest.approx(np.zeros(9))
+    assert planner.GetOutputPort("plan").Eval(context) == Plan()
+    assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([1, 1])
+    assert planner.GetOutputPort("balance").Eval(context) == pytest.approx(np.zeros(9))
 
 
 def test_it_stands_until_it_is_told_to_walk(planner, plant):
     simulator = simulator_of(planner, plant, (0, 0, 0))
     simulator.AdvanceTo(0.5)
-    plan = planner.get_plan_output_port().Eval(simulator.get_context())
+    plan = planner.GetOutputPort("plan").Eval(simulator.get_context())
     assert plan.reference.phase is Phase.STAND
-    assert planner.get_phase_output_port().Eval(simulator.get_context()) == pytest.approx([0, 0])
+    assert planner.GetOutputPort("phase").Eval(simulator.get_context()) == pytest.approx([0, 0])
 
 
 def test_a_command_makes_it_shift_the_weight_and_lift_the_first_foot(planner, plant):
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     simulator.AdvanceTo(0.5)
-    assert planner.get_plan_output_port().Eval(simulator.get_context()).reference.phase is Phase.WEIGHT_SHIFT
+    assert planner.GetOutputPort("plan").Eval(simulator.get_context()).reference.phase is Phase.WEIGHT_SHIFT
     simulator.AdvanceTo(1.2)
     context = simulator.get_context()
-    assert planner.get_plan_output_port().Eval(context).reference.phase is Phase.SINGLE_SUPPORT
-    assert planner.get_contact_schedule_output_port().Eval(context) == pytest.approx([0, 1])
+    assert planner.GetOutputPort("plan").Eval(context).reference.phase is Phase.SINGLE_SUPPORT
+    assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([0, 1])
 
 
 def test_reading_plans_nothing(planner, plant):
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
-    first = planner.get_plan_output_port().Eval(context)
-    planner.get_balance_output_port().Eval(context)
-    assert planner.get_plan_output_port().Eval(context).state is first.state
+    first = planner.GetOutputPort("plan").Eval(context)
+    planner.GetOutputPort("balance").Eval(context)
+    assert planner.GetOutputPort("plan").Eval(context).state is first.state

@@ -48,13 +48,13 @@ def test_ports(source):
     assert source.num_input_ports() == 0
     names = {source.get_output_port(i).get_name() for i in range(source.num_output_ports())}
     assert names == {"sole_targets", "pelvis_reference", "phase", "contact_schedule"}
-    soles = source.get_sole_targets_output_port()
+    soles = source.GetOutputPort("sole_targets")
     assert (soles.get_name(), soles.size()) == ("sole_targets", 26)
-    pelvis = source.get_pelvis_reference_output_port()
+    pelvis = source.GetOutputPort("pelvis_reference")
     assert (pelvis.get_name(), pelvis.size()) == ("pelvis_reference", 13)
-    assert (source.get_phase_output_port().get_name(), source.get_phase_output_port().size()) == ("phase", 2)
-    assert source.get_contact_schedule_output_port().get_name() == "contact_schedule"
-    assert source.get_contact_schedule_output_port().size() == 2
+    assert (source.GetOutputPort("phase").get_name(), source.GetOutputPort("phase").size()) == ("phase", 2)
+    assert source.GetOutputPort("contact_schedule").get_name() == "contact_schedule"
+    assert source.GetOutputPort("contact_schedule").size() == 2
 
 
 @pytest.mark.parametrize(("pose", "velocity"), [("X_PRs", "V_PRs"), ("X_PLs", "V_PLs"), ("X_WP", "V_WP")])
@@ -144,7 +144,7 @@ def test_a_preview_is_of_the_soles_alone(source, gait, skeleton, preview, t):
 def test_the_pelvis_is_that_of_the_gait(skeleton, ramp):
     """Slow and quick ramps: the end of the ramp may come before or after the first touchdown, or the latter never."""
     gait = WalkingGait(FootPathParameters(), skeleton.hip_half_width, ramp)
-    port = GaitSplineSource(gait, skeleton).get_pelvis_reference_output_port()
+    port = GaitSplineSource(gait, skeleton).GetOutputPort("pelvis_reference")
     context = port.get_system().CreateDefaultContext()
     for t in np.linspace(0.0, 20.0, 501):
         context.SetTime(t)

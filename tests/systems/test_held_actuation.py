@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.systems.framework import DiagramBuilder
 
-from humanwalk.diagrams.human_plant import add_human_plant
+from humanwalk.choices.world import add_human_plant
 from humanwalk.scenario import load_scenario
 from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
@@ -22,11 +22,11 @@ def laws():
 def actuation(law, time, state, desired_state, sample_time, feedforward):
     context = law.CreateDefaultContext()
     context.SetTime(time)
-    law.get_state_input_port().FixValue(context, state)
-    law.get_desired_state_input_port().FixValue(context, desired_state)
-    law.get_sample_time_input_port().FixValue(context, [sample_time])
-    law.get_feedforward_input_port().FixValue(context, feedforward)
-    return law.get_actuation_output_port().Eval(context)
+    law.GetInputPort("state").FixValue(context, state)
+    law.GetInputPort("desired_state").FixValue(context, desired_state)
+    law.GetInputPort("sample_time").FixValue(context, [sample_time])
+    law.GetInputPort("feedforward").FixValue(context, feedforward)
+    return law.GetOutputPort("actuation").Eval(context)
 
 
 def test_ports(laws):
@@ -38,7 +38,7 @@ def test_ports(laws):
         "feedforward": 42,
         "state": 97,
     }
-    assert (held.get_actuation_output_port().get_name(), held.get_actuation_output_port().size()) == ("actuation", 42)
+    assert (held.GetOutputPort("actuation").get_name(), held.GetOutputPort("actuation").size()) == ("actuation", 42)
 
 
 @given(st.integers(0, 10_000), st.floats(0.0, 10.0), st.floats(0.0, 0.01), st.floats(1.0, 1000.0))

@@ -36,7 +36,7 @@ def sole_target(X_PS, V_PS=V):
 def fixed_context(solver, legs):
     context = solver.CreateDefaultContext()
     targets = [sole_target(legs[side].X_PS(THETA)) for side in SIDES]
-    solver.get_sole_targets_input_port().FixValue(context, np.concatenate(targets))
+    solver.GetInputPort("sole_targets").FixValue(context, np.concatenate(targets))
     return context
 
 
@@ -62,12 +62,12 @@ def count_solutions(monkeypatch):
 def test_ports(solver):
     inputs = [solver.get_input_port(i).get_name() for i in range(solver.num_input_ports())]
     assert sorted(inputs) == ["posture", "sole_targets"]
-    assert solver.get_sole_targets_input_port().size() == 26
-    assert solver.get_posture_input_port().size() == 2 * N
+    assert solver.GetInputPort("sole_targets").size() == 26
+    assert solver.GetInputPort("posture").size() == 2 * N
     for port, name, size in (
-        (solver.get_desired_state_output_port(), "desired_state", 2 * N),
-        (solver.get_sample_time_output_port(), "sample_time", 1),
-        (solver.get_status_output_port(), "status", 6),
+        (solver.GetOutputPort("desired_state"), "desired_state", 2 * N),
+        (solver.GetOutputPort("sample_time"), "sample_time", 1),
+        (solver.GetOutputPort("status"), "status", 6),
     ):
         assert (port.get_name(), port.size()) == (name, size)
 
@@ -75,17 +75,17 @@ def test_ports(solver):
 def test_initialisation_solves_for_time_zero(solver, legs, places):
     context = fixed_context(solver, legs)
     initialized(solver, context)
-    q, _ = np.split(solver.get_desired_state_output_port().Eval(context), 2)
+    q, _ = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
     for side in SIDES:
         error = pose_error(legs[side].X_PS(q[places[side]]), legs[side].X_PS(THETA))
         np.testing.assert_allclose(error, 0.0, atol=1e-6)
-    assert solver.get_sample_time_output_port().Eval(context)[0] == 0.0
+    assert solver.GetOutputPort("sample_time").Eval(context)[0] == 0.0
 
 
 def test_rates_move_the_soles_as_asked(solver, legs, places):
     context = fixed_context(solver, legs)
     initialized(solver, context)
-    q, v = np.split(solver.get_desired_state_output_port().Eval(context), 2)
+    q, v = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
     for side in SIDES:
         J = legs[side].Jv_V_PS(q[places[side]])
         np.testing.assert_allclose(J @ v[places[side]], V, atol=1e-9)
@@ -102,7 +102,7 @@ def test_reading_outputs_solves_nothing(solver, legs, count_solutions):
 def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
     simulator = initialized(solver, fixed_context(solver, legs))
     at_start = len(count_solutions)
-    sample_time = solver.get_sample_time_output_port()
+    sample_time = solver.GetOutputPort("sample_time")
     for k in range(1, 5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
         assert sample_time.Eval(simulator.get_context())[0] == pytest.approx(k * PERIOD)
@@ -112,15 +112,15 @@ def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
 def test_between_updates_nothing_changes(solver, legs):
     simulator = initialized(solver, fixed_context(solver, legs))
     simulator.AdvanceTo(1.2 * PERIOD)
-    before = solver.get_desired_state_output_port().Eval(simulator.get_context())
+    before = solver.GetOutputPort("desired_state").Eval(simulator.get_context())
     simulator.AdvanceTo(1.8 * PERIOD)
-    np.testing.assert_array_equal(solver.get_desired_state_output_port().Eval(simulator.get_context()), before)
+    np.testing.assert_array_equal(solver.GetOutputPort("desired_state").Eval(simulator.get_context()), before)
 
 
 def test_status_of_a_reached_pose(solver, legs):
     context = fixed_context(solver, legs)
     initialized(solver, context)
-    status = solver.get_status_output_port().Eval(context)
+    status = solver.GetOutputPort("status").Eval(context)
     assert np.all(status[:2] <= 1e-6)
     assert np.all((status[2:4] >= 1) & (status[2:4] <= 50))
     np.testing.assert_array_equal(status[4:], [1, 1])
@@ -130,13 +130,13 @@ def test_a_pose_out_of_reach_is_flagged_for_its_leg_alone(solver, legs, places):
     context = fixed_context(solver, legs)
     far = RigidTransform(legs["Left"].X_PS(np.zeros(7)).translation() - [0.0, 0.0, 0.1])
     targets = np.concatenate((sole_target(legs["Right"].X_PS(THETA)), sole_target(far)))
-    solver.get_sole_targets_input_port().FixValue(context, targets)
+    solver.GetInputPort("sole_targets").FixValue(context, targets)
     simulator = initialized(solver, context)
     simulator.AdvanceTo(2.5 * PERIOD)
-    status = solver.get_status_output_port().Eval(context)
+    status = solver.GetOutputPort("status").Eval(context)
     np.testing.assert_array_equal(status[4:], [1, 0])
     assert status[1] == pytest.approx(0.1, abs=1e-3)
-    desired = solver.get_desired_state_output_port().Eval(context)
+    desired = solver.GetOutputPort("desired_state").Eval(context)
     assert np.all(np.isfinite(desired))
     error = pose_error(legs["Left"].X_PS(desired[places["Left"]]), far)
     assert np.linalg.norm(error) == pytest.approx(status[1], abs=1e-9)
@@ -146,11 +146,11 @@ def test_posture_passes_except_for_the_legs(solver, legs, places):
     posture = np.arange(2.0 * N) / 100
     context = fixed_context(solver, legs)
     initialized(solver, context)
-    alone = solver.get_desired_state_output_port().Eval(context).copy()
+    alone = solver.GetOutputPort("desired_state").Eval(context).copy()
     context = fixed_context(solver, legs)
-    solver.get_posture_input_port().FixValue(context, posture)
+    solver.GetInputPort("posture").FixValue(context, posture)
     initialized(solver, context)
-    together = solver.get_desired_state_output_port().Eval(context)
+    together = solver.GetOutputPort("desired_state").Eval(context)
     in_legs = np.isin(np.arange(N), places["Right"] + places["Left"])
     for half, start in ((slice(0, N), 0), (slice(N, 2 * N), N)):
         np.testing.assert_array_equal(together[half][~in_legs], posture[start : start + N][~in_legs])
@@ -163,7 +163,7 @@ def test_before_the_first_solution_is_the_start_posture(plant, joints):
         plant, InverseKinematicsParameters(), PERIOD, start_posture={"RightLegTibiaMotion": 0.7}
     )
     context = solver.CreateDefaultContext()
-    for port in (solver.get_desired_state_output_port(), solver.get_previous_state_output_port()):
+    for port in (solver.GetOutputPort("desired_state"), solver.GetOutputPort("previous_state")):
         q, v = np.split(port.Eval(context), 2)
         assert q[joints.names.index("RightLegTibiaMotion")] == 0.7
         assert np.count_nonzero(q) == 1
@@ -175,14 +175,14 @@ def test_it_keeps_the_sample_before(plant, legs):
     solver = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, preview=PERIOD)
     simulator = initialized(solver, fixed_context(solver, legs))
     context = simulator.get_context()
-    times = (solver.get_previous_time_output_port(), solver.get_sample_time_output_port())
+    times = (solver.GetOutputPort("previous_time"), solver.GetOutputPort("sample_time"))
     assert [port.Eval(context)[0] for port in times] == pytest.approx([0.0, PERIOD])
-    last = solver.get_desired_state_output_port().Eval(context).copy()
+    last = solver.GetOutputPort("desired_state").Eval(context).copy()
     for k in range(1, 4):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
         assert [port.Eval(context)[0] for port in times] == pytest.approx([k * PERIOD, (k + 1) * PERIOD])
-        np.testing.assert_array_equal(solver.get_previous_state_output_port().Eval(context), last)
-        last = solver.get_desired_state_output_port().Eval(context).copy()
+        np.testing.assert_array_equal(solver.GetOutputPort("previous_state").Eval(context), last)
+        last = solver.GetOutputPort("desired_state").Eval(context).copy()
 
 
 def walk(plant, gait, skeleton, period, until):
@@ -190,11 +190,11 @@ def walk(plant, gait, skeleton, period, until):
     builder = DiagramBuilder()
     source = builder.AddSystem(GaitSplineSource(gait, skeleton))
     solver = builder.AddSystem(InverseKinematicsSolver(plant, InverseKinematicsParameters(tolerance=1e-9), period))
-    builder.Connect(source.get_sole_targets_output_port(), solver.get_sole_targets_input_port())
+    builder.Connect(source.GetOutputPort("sole_targets"), solver.GetInputPort("sole_targets"))
     ports = (
-        solver.get_sample_time_output_port(),
-        solver.get_desired_state_output_port(),
-        solver.get_status_output_port(),
+        solver.GetOutputPort("sample_time"),
+        solver.GetOutputPort("desired_state"),
+        solver.GetOutputPort("status"),
     )
     logs = [LogVectorOutput(port, builder, publish_period=period) for port in ports]
     simulator = Simulator(builder.Build())

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.control.joint_map import JointMap
+from humanwalk.body.joint_map import JointMap
 from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
@@ -26,17 +26,17 @@ def law(plant):
 
 def test_ports(law, plant):
     ports = [
-        law.get_previous_state_input_port(),
-        law.get_desired_state_input_port(),
-        law.get_previous_time_input_port(),
-        law.get_state_input_port(),
-        law.get_feedforward_input_port(),
+        law.GetInputPort("previous_state"),
+        law.GetInputPort("desired_state"),
+        law.GetInputPort("previous_time"),
+        law.GetInputPort("state"),
+        law.GetInputPort("feedforward"),
     ]
     names = ["previous_state", "desired_state", "previous_time", "state", "feedforward"]
     assert [port.get_name() for port in ports] == names
     assert [port.size() for port in ports] == [2 * N, 2 * N, 1, plant.num_multibody_states(), N]
     assert law.num_input_ports() == len(ports)
-    assert law.get_actuation_output_port().size() == N
+    assert law.GetOutputPort("actuation").size() == N
 
 
 @given(
@@ -59,12 +59,12 @@ def test_it_is_the_banks_actuation(bank, law, plant, rng, share, fed):
     for name, value in inputs.items():
         bank.GetInputPort(name).FixValue(of_bank, value)
         law.GetInputPort(name).FixValue(of_law, value)
-    bank.get_sample_time_input_port().FixValue(of_bank, [1.0 + PERIOD])
+    bank.GetInputPort("sample_time").FixValue(of_bank, [1.0 + PERIOD])
     of_bank.SetTime(1.0 + PERIOD * share)
     of_law.SetTime(1.0 + PERIOD * share)
-    found = law.get_actuation_output_port().Eval(of_law)
-    np.testing.assert_allclose(found, bank.get_actuation_output_port().Eval(of_bank), rtol=1e-9, atol=1e-7)
-    held = bank.get_held_desired_state_output_port().Eval(of_bank)
+    found = law.GetOutputPort("actuation").Eval(of_law)
+    np.testing.assert_allclose(found, bank.GetOutputPort("actuation").Eval(of_bank), rtol=1e-9, atol=1e-7)
+    held = bank.GetOutputPort("held_desired_state").Eval(of_bank)
     expected = KP * (held[:N] - joints.positions(state)) + KD * held[N:] + inputs.get("feedforward", 0.0)
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-7)
 

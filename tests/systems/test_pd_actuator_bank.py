@@ -10,9 +10,9 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.hermite import HermitePiece
-from humanwalk.control.joint_map import JointMap
 from humanwalk.control.pd_control import ActuatorParameters, joint_gains, pd_torque
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank, install_gains
@@ -90,21 +90,21 @@ def test_ports(implicit, explicit, discrete_plant):
         assert {
             bank.get_input_port(i).get_name(): bank.get_input_port(i).size() for i in range(bank.num_input_ports())
         } == sizes
-        assert bank.get_desired_state_input_port().get_name() == "desired_state"
-        assert bank.get_sample_time_input_port().get_name() == "sample_time"
-        assert bank.get_previous_state_input_port().get_name() == "previous_state"
-        assert bank.get_previous_time_input_port().get_name() == "previous_time"
-        assert bank.get_state_input_port().get_name() == "state"
-        assert bank.get_net_actuation_input_port().get_name() == "net_actuation"
-        assert bank.get_feedforward_input_port().get_name() == "feedforward"
+        assert bank.GetInputPort("desired_state").get_name() == "desired_state"
+        assert bank.GetInputPort("sample_time").get_name() == "sample_time"
+        assert bank.GetInputPort("previous_state").get_name() == "previous_state"
+        assert bank.GetInputPort("previous_time").get_name() == "previous_time"
+        assert bank.GetInputPort("state").get_name() == "state"
+        assert bank.GetInputPort("net_actuation").get_name() == "net_actuation"
+        assert bank.GetInputPort("feedforward").get_name() == "feedforward"
         for port, name, size in (
-            (bank.get_held_desired_state_output_port(), "held_desired_state", 2 * N),
-            (bank.get_actuation_output_port(), "actuation", N),
-            (bank.get_torque_output_port(), "torque", N),
-            (bank.get_saturated_output_port(), "saturated", N),
+            (bank.GetOutputPort("held_desired_state"), "held_desired_state", 2 * N),
+            (bank.GetOutputPort("actuation"), "actuation", N),
+            (bank.GetOutputPort("torque"), "torque", N),
+            (bank.GetOutputPort("saturated"), "saturated", N),
         ):
             assert (port.get_name(), port.size()) == (name, size)
-    port = implicit.get_plant_desired_state_output_port()
+    port = implicit.GetOutputPort("plant_desired_state")
     assert (port.get_name(), port.size()) == ("plant_desired_state", 2 * N)
     assert not explicit.HasOutputPort("plant_desired_state")
 
@@ -112,7 +112,7 @@ def test_ports(implicit, explicit, discrete_plant):
 def test_the_implicit_law_does_not_feed_the_state_through(implicit, explicit):
     def feeds_through(bank):
         return bank.HasDirectFeedthrough(
-            bank.get_state_input_port().get_index(), bank.get_actuation_output_port().get_index()
+            bank.GetInputPort("state").get_index(), bank.GetOutputPort("actuation").get_index()
         )
 
     assert not feeds_through(implicit)
@@ -133,7 +133,7 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explici
     state[plant.num_positions() + joints.v] = v
     feedforward = rng.normal(size=N)
     context = context_with(explicit, desired_state=np.concatenate((q_d, v_d)), state=state, feedforward=feedforward)
-    actual = explicit.get_actuation_output_port().Eval(context)
+    actual = explicit.GetOutputPort("actuation").Eval(context)
     kp, kd = gains
     for i, name in enumerate(joints.names):
         tau = kp[i] * (q_d[i] - q[i]) + kd[i] * (v_d[i] - v[i]) + feedforward[i]
@@ -144,7 +144,7 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explici
 def test_without_feedforward_there_is_none(explicit, plant):
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=np.zeros(2 * N), state=state)
-    np.testing.assert_array_equal(explicit.get_actuation_output_port().Eval(context), 0.0)
+    np.testing.assert_array_equal(explicit.GetOutputPort("actuation").Eval(context), 0.0)
 
 
 @pytest.mark.parametrize("law", ["implicit", "explicit"])
@@ -152,7 +152,7 @@ def test_actuators_at_their_limits_are_reported(implicit, explicit, joints, law)
     bank = implicit if law == "implicit" else explicit
     torque = 0.5 * joints.effort_limits
     torque[3], torque[7] = joints.effort_limits[3], -joints.effort_limits[7]
-    saturated = bank.get_saturated_output_port().Eval(context_with(bank, net_actuation=torque))
+    saturated = bank.GetOutputPort("saturated").Eval(context_with(bank, net_actuation=torque))
     assert set(np.flatnonzero(saturated)) == {3, 7}
     assert set(saturated) == {0.0, 1.0}
 
@@ -160,9 +160,9 @@ def test_actuators_at_their_limits_are_reported(implicit, explicit, joints, law)
 def test_the_implicit_law_passes_the_feedforward(implicit):
     tau = np.arange(float(N))
     context = context_with(implicit, desired_state=np.ones(2 * N), feedforward=tau)
-    np.testing.assert_array_equal(implicit.get_actuation_output_port().Eval(context), tau)
+    np.testing.assert_array_equal(implicit.GetOutputPort("actuation").Eval(context), tau)
     context = context_with(implicit, desired_state=np.ones(2 * N))
-    np.testing.assert_array_equal(implicit.get_actuation_output_port().Eval(context), 0.0)
+    np.testing.assert_array_equal(implicit.GetOutputPort("actuation").Eval(context), 0.0)
 
 
 @settings(max_examples=20)
@@ -178,13 +178,13 @@ def test_the_semi_implicit_law_leaves_the_damping_to_the_plant(rng):
     state[joints.q] = q
     state[plant.num_positions() + joints.v] = v
     context = context_with(bank, desired_state=np.concatenate((q_d, v_d)), state=state)
-    actuation = bank.get_actuation_output_port().Eval(context)
+    actuation = bank.GetOutputPort("actuation").Eval(context)
     law = pd_torque(q, v, q_d, v_d, kp, kd)
     np.testing.assert_allclose(actuation - kd * v, np.clip(law, -limits, limits), atol=1e-9)
 
     context = context_with(bank, desired_state=np.concatenate((q_d, v_d)), state=state, net_actuation=actuation)
-    np.testing.assert_allclose(bank.get_torque_output_port().Eval(context), actuation - kd * v, atol=1e-9)
-    saturated = bank.get_saturated_output_port().Eval(context)
+    np.testing.assert_allclose(bank.GetOutputPort("torque").Eval(context), actuation - kd * v, atol=1e-9)
+    saturated = bank.GetOutputPort("saturated").Eval(context)
     np.testing.assert_array_equal(saturated, (np.abs(law) >= limits).astype(float))
 
 
@@ -224,13 +224,13 @@ def test_the_torque_shown_is_what_moved_the_body_in_the_step_that_just_ended(gai
     bank = builder.AddSystem(PdActuatorBank(plant, *gains, law))
     # A jolt: away from the posture at once, by less than a limit stops.
     desired = builder.AddSystem(ConstantVectorSource(np.concatenate((np.full(N, 1e-4), np.zeros(N)))))
-    builder.Connect(desired.get_output_port(), bank.get_desired_state_input_port())
-    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
-    builder.Connect(plant.get_net_actuation_output_port(), bank.get_net_actuation_input_port())
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    builder.Connect(desired.get_output_port(), bank.GetInputPort("desired_state"))
+    builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
+    builder.Connect(plant.get_net_actuation_output_port(), bank.GetInputPort("net_actuation"))
+    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
     if law == "implicit":
         human = plant.GetModelInstanceByName("human")
-        builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(human))
+        builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(human))
     diagram = builder.Build()
     simulator = Simulator(diagram)
     context = plant.GetMyContextFromRoot(simulator.get_context())
@@ -239,7 +239,7 @@ def test_the_torque_shown_is_what_moved_the_body_in_the_step_that_just_ended(gai
     v = plant.GetVelocities(context)
     own = [bare.get_joint_actuator(JointActuatorIndex(i)).joint().default_damping_vector()[0] for i in range(N)]
     felt = (M @ v / h)[joints.v] + own * v[joints.v]
-    shown = bank.get_torque_output_port().Eval(bank.GetMyContextFromRoot(simulator.get_context()))
+    shown = bank.GetOutputPort("torque").Eval(bank.GetMyContextFromRoot(simulator.get_context()))
     assert np.abs(felt).max() > 0.1
     np.testing.assert_allclose(shown, felt, rtol=1e-3, atol=1e-4 * np.abs(felt).max())
 
@@ -253,9 +253,9 @@ def test_between_samples_angles_move_on_with_their_rates(implicit, rng, age):
     context = context_with(implicit, desired_state=np.concatenate((q, v)), sample_time=[1.0])
     context.SetTime(1.0 + age)
     for _ in range(2):
-        held = implicit.get_held_desired_state_output_port().Eval(context)
+        held = implicit.GetOutputPort("held_desired_state").Eval(context)
         np.testing.assert_allclose(held, np.concatenate((q + age * v, v)), atol=1e-12)
-    led = implicit.get_plant_desired_state_output_port().Eval(context)
+    led = implicit.GetOutputPort("plant_desired_state").Eval(context)
     np.testing.assert_allclose(led, np.concatenate((q + (age + 0.001) * v, v)), atol=1e-12)
 
 
@@ -266,7 +266,7 @@ def test_from_the_sample_before_to_the_next_goes_their_cubic(implicit, rng, shar
     context, t = context_with(implicit, **samples), 1.0 + 0.01 * share
     context.SetTime(t)
     expected = HermitePiece.between(1.0, x0, 1.01, x1).at(t)
-    np.testing.assert_array_equal(implicit.get_held_desired_state_output_port().Eval(context), expected)
+    np.testing.assert_array_equal(implicit.GetOutputPort("held_desired_state").Eval(context), expected)
     inputs = (samples[name] for name in ("desired_state", "sample_time", "previous_state", "previous_time"))
     rows = implicit.held_states(np.array([t]), *(np.array([value]) for value in inputs))
     np.testing.assert_array_equal(rows, [expected])
@@ -283,10 +283,10 @@ def test_the_law_follows_the_desired_state_between_samples(explicit, plant, join
         context = context_with(explicit, **given_samples, state=state, feedforward=feedforward)
         context.SetTime(1.0 + age)
         for _ in range(2):
-            held = explicit.get_held_desired_state_output_port().Eval(context)
+            held = explicit.GetOutputPort("held_desired_state").Eval(context)
             law = pd_torque(joints.positions(state), joints.velocities(state), held[:N], held[N:], kp, kd) + feedforward
             expected = np.clip(law, -joints.effort_limits, joints.effort_limits)
-            np.testing.assert_allclose(explicit.get_actuation_output_port().Eval(context), expected, atol=1e-9)
+            np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), expected, atol=1e-9)
             feedforward = 2.0 * feedforward
             explicit.GetInputPort("feedforward").FixValue(context, feedforward)
 
@@ -295,7 +295,7 @@ def test_without_sample_time_the_desired_state_is_current(implicit):
     desired = np.arange(2.0 * N)
     context = context_with(implicit, desired_state=desired)
     context.SetTime(7.0)
-    np.testing.assert_array_equal(implicit.get_held_desired_state_output_port().Eval(context), desired)
+    np.testing.assert_array_equal(implicit.GetOutputPort("held_desired_state").Eval(context), desired)
 
 
 def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
@@ -304,7 +304,7 @@ def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
     context = context_with(explicit, desired_state=desired, sample_time=[0.0], state=state)
     context.SetTime(0.1)
     expected = pd_torque(np.zeros(N), np.zeros(N), 0.001 * np.ones(N), 0.01 * np.ones(N), *gains)
-    np.testing.assert_allclose(explicit.get_actuation_output_port().Eval(context), expected)
+    np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), expected)
 
 
 # ---- stability, with the thesis' ankle gains on the floating human
@@ -324,12 +324,12 @@ def perturbed_run(time_step, gains, law, steps, unchecked=False):
     else:
         bank = builder.AddSystem(PdActuatorBank(plant, *gains, law=law))
     desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
-    builder.Connect(desired.get_output_port(), bank.get_desired_state_input_port())
-    builder.Connect(plant.get_state_output_port(), bank.get_state_input_port())
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    builder.Connect(desired.get_output_port(), bank.GetInputPort("desired_state"))
+    builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
+    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
     if law == "implicit":
         (instance,) = {plant.get_joint_actuator(JointActuatorIndex(i)).model_instance() for i in range(N)}
-        builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(instance))
+        builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(instance))
     simulator = Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     q = plant.GetPositions(context)
@@ -416,9 +416,9 @@ def settled_by_bank(time_step, desired_state, kp=KP, kd=KD):
     builder, plant, instance = one_joint(time_step, kp, kd)
     bank = builder.AddSystem(PdActuatorBank(plant, np.array([kp]), np.array([kd])))
     desired = builder.AddSystem(ConstantVectorSource(desired_state))
-    builder.Connect(desired.get_output_port(), bank.get_desired_state_input_port())
-    builder.Connect(bank.get_plant_desired_state_output_port(), plant.get_desired_state_input_port(instance))
-    builder.Connect(bank.get_actuation_output_port(), plant.get_actuation_input_port())
+    builder.Connect(desired.get_output_port(), bank.GetInputPort("desired_state"))
+    builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(instance))
+    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
     return settled_state(builder, plant, time_step)
 
 
@@ -454,6 +454,6 @@ def test_folded_rates_are_torque_and_leave_the_records_alone(plant, gains):
     context.SetTime(0.1)
     q, v = np.split(desired, 2)
     held = q + 0.1 * v
-    np.testing.assert_allclose(bank.get_held_desired_state_output_port().Eval(context), [*held, *v])
-    np.testing.assert_allclose(bank.get_plant_desired_state_output_port().Eval(context), [*held, *(0 * v)])
-    np.testing.assert_allclose(bank.get_actuation_output_port().Eval(context), tau + gains[1] * v)
+    np.testing.assert_allclose(bank.GetOutputPort("held_desired_state").Eval(context), [*held, *v])
+    np.testing.assert_allclose(bank.GetOutputPort("plant_desired_state").Eval(context), [*held, *(0 * v)])
+    np.testing.assert_allclose(bank.GetOutputPort("actuation").Eval(context), tau + gains[1] * v)

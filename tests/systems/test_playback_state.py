@@ -28,10 +28,10 @@ def test_ports(system):
 def test_state_is_the_reference(system, plant, joints):
     context = system.CreateDefaultContext()
     reference = (X_WP.rotation().ToQuaternion().wxyz(), X_WP.translation(), V_WP.get_coeffs())
-    system.get_pelvis_reference_input_port().FixValue(context, np.concatenate(reference))
-    system.get_desired_state_input_port().FixValue(context, np.concatenate((ANGLES, RATES)))
+    system.GetInputPort("pelvis_reference").FixValue(context, np.concatenate(reference))
+    system.GetInputPort("desired_state").FixValue(context, np.concatenate((ANGLES, RATES)))
     body = plant.CreateDefaultContext()
-    plant.SetPositionsAndVelocities(body, system.get_state_output_port().Eval(context))
+    plant.SetPositionsAndVelocities(body, system.GetOutputPort("state").Eval(context))
     pelvis = plant.GetBodyByName("Pelvis")
     assert pelvis.EvalPoseInWorld(body).IsNearlyEqualTo(X_WP, 1e-12)
     np.testing.assert_allclose(pelvis.EvalSpatialVelocityInWorld(body).get_coeffs(), V_WP.get_coeffs(), atol=1e-12)
@@ -42,4 +42,4 @@ def test_state_is_the_reference(system, plant, joints):
 
 def test_unconnected_input_is_refused(system):
     with pytest.raises(RuntimeError, match="pelvis_reference"):
-        system.get_state_output_port().Eval(system.CreateDefaultContext())
+        system.GetOutputPort("state").Eval(system.CreateDefaultContext())

@@ -13,10 +13,10 @@ X0, X1 = np.arange(2.0 * N), np.arange(2.0 * N)[::-1] / 4
 
 def context_at(interpolator, t):
     context = interpolator.CreateDefaultContext()
-    interpolator.get_previous_state_input_port().FixValue(context, X0)
-    interpolator.get_previous_time_input_port().FixValue(context, [0.10])
-    interpolator.get_next_state_input_port().FixValue(context, X1)
-    interpolator.get_next_time_input_port().FixValue(context, [0.12])
+    interpolator.GetInputPort("previous_state").FixValue(context, X0)
+    interpolator.GetInputPort("previous_time").FixValue(context, [0.10])
+    interpolator.GetInputPort("next_state").FixValue(context, X1)
+    interpolator.GetInputPort("next_time").FixValue(context, [0.12])
     context.SetTime(t)
     return context
 
@@ -28,7 +28,7 @@ def test_ports():
         for i in range(interpolator.num_input_ports())
     }
     assert sizes == {"previous_state": 6, "previous_time": 1, "next_state": 6, "next_time": 1}
-    port = interpolator.get_desired_state_output_port()
+    port = interpolator.GetOutputPort("desired_state")
     assert (port.get_name(), port.size()) == ("desired_state", 6)
 
 
@@ -37,13 +37,13 @@ def test_desired_state_is_the_cubic_through_the_samples(t):
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, t)
     expected = HermitePiece.between(0.10, X0, 0.12, X1).at(t)
-    np.testing.assert_array_equal(interpolator.get_desired_state_output_port().Eval(context), expected)
+    np.testing.assert_array_equal(interpolator.GetOutputPort("desired_state").Eval(context), expected)
 
 
 def test_time_moves_it():
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, 0.10)
-    port = interpolator.get_desired_state_output_port()
+    port = interpolator.GetOutputPort("desired_state")
     np.testing.assert_allclose(port.Eval(context), X0)
     context.SetTime(0.12)
     np.testing.assert_allclose(port.Eval(context), X1, atol=1e-12)
@@ -52,7 +52,7 @@ def test_time_moves_it():
 def test_new_samples_make_a_new_piece():
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, 0.12)
-    port = interpolator.get_desired_state_output_port()
+    port = interpolator.GetOutputPort("desired_state")
     np.testing.assert_allclose(port.Eval(context), X1, atol=1e-12)
-    interpolator.get_next_state_input_port().FixValue(context, 2 * X1)
+    interpolator.GetInputPort("next_state").FixValue(context, 2 * X1)
     np.testing.assert_allclose(port.Eval(context), 2 * X1)

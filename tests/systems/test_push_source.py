@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from humanwalk.control.push import Push, PushParameters, pushes_of
 from humanwalk.systems.push_source import PushSource
+from humanwalk.walking.push import Push, PushParameters, pushes_of
 
 
 def at(source, time):
     context = source.CreateDefaultContext()
     context.SetTime(time)
-    return source.get_spatial_forces_output_port().Eval(context), source.get_force_output_port().Eval(context)
+    return source.GetOutputPort("spatial_forces").Eval(context), source.GetOutputPort("force").Eval(context)
 
 
 @pytest.fixture
@@ -21,8 +21,8 @@ def source(plant):
 
 
 def test_port_names(source):
-    assert source.get_spatial_forces_output_port().get_name() == "spatial_forces"
-    assert source.get_force_output_port().size() == 3
+    assert source.GetOutputPort("spatial_forces").get_name() == "spatial_forces"
+    assert source.GetOutputPort("force").size() == 3
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_a_context_may_hold_other_pushes(source):
     context = source.CreateDefaultContext()
     source.set_pushes(context, [Push(1.0, 0.1, 20.0)])
     context.SetTime(1.05)
-    assert source.get_force_output_port().Eval(context) == pytest.approx([200.0, 0.0, 0.0])
+    assert source.GetOutputPort("force").Eval(context) == pytest.approx([200.0, 0.0, 0.0])
     assert at(source, 1.05)[1] == pytest.approx([0.0, 0.0, 0.0])
     with pytest.raises(ValueError, match="Rib: no such body"):
         source.set_pushes(context, [Push(body="Rib")])

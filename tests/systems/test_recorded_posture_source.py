@@ -5,7 +5,7 @@ import pytest
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RotationMatrix
 
-from humanwalk.gait.recorded_motion import RecordedMotion
+from humanwalk.motion.recorded_motion import RecordedMotion
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 
 N = 3
@@ -22,9 +22,9 @@ def motion(ease_in=0.3, period=0.02, duration=1.0):
 def at(source, time):
     context = source.CreateDefaultContext()
     context.SetTime(time)
-    reference = source.get_pelvis_reference_output_port().Eval(context)
+    reference = source.GetOutputPort("pelvis_reference").Eval(context)
     return {
-        "desired_state": source.get_desired_state_output_port().Eval(context),
+        "desired_state": source.GetOutputPort("desired_state").Eval(context),
         "R_WP": RotationMatrix(Quaternion(reference[:4])).matrix(),
         "p_WP": reference[4:7],
         "w_WP": reference[7:10],
@@ -37,7 +37,7 @@ def test_ports_are_those_of_the_docstring():
     names = [source.get_output_port(i).get_name() for i in range(source.num_output_ports())]
     assert names == ["desired_state", "pelvis_reference"]
     assert source.num_input_ports() == 0
-    assert source.get_desired_state_output_port().size() == 2 * N
+    assert source.GetOutputPort("desired_state").size() == 2 * N
 
 
 @pytest.mark.parametrize("ease_in", [0.0, 0.3])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from humanwalk.body.groups import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
+from humanwalk.body.limbs import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
 from humanwalk.control.balance_levels import UpperBodyBalanceParameters
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 
@@ -25,34 +25,34 @@ def simulator_of(level, forward=0.0, leftward=0.0, posture=POSTURE):
     com = np.zeros(6)
     com[:3] = [1.1, 0.0, 0.01] + 0.9 * np.array([np.tan(forward), np.tan(leftward), 1.0])
     context = level.CreateDefaultContext()
-    level.get_posture_input_port().FixValue(context, posture)
-    level.get_soles_input_port().FixValue(context, SOLES)
-    level.get_com_input_port().FixValue(context, com)
+    level.GetInputPort("posture").FixValue(context, posture)
+    level.GetInputPort("soles").FixValue(context, SOLES)
+    level.GetInputPort("com").FixValue(context, com)
     return Simulator(level, context)
 
 
 def bend(level, simulator):
     """What is added to angles and to rates, by joint."""
-    return np.split(level.get_balanced_posture_output_port().Eval(simulator.get_context()) - POSTURE, 2)
+    return np.split(level.GetOutputPort("balanced_posture").Eval(simulator.get_context()) - POSTURE, 2)
 
 
 def test_ports(level):
     sizes = {level.get_input_port(i).get_name(): level.get_input_port(i).size() for i in range(level.num_input_ports())}
     assert sizes == {"posture": 2 * N, "soles": 6, "com": 6}
     for port, name, size in (
-        (level.get_balanced_posture_output_port(), "balanced_posture", 2 * N),
-        (level.get_alpha_output_port(), "alpha", 4),
+        (level.GetOutputPort("balanced_posture"), "balanced_posture", 2 * N),
+        (level.GetOutputPort("alpha"), "alpha", 4),
     ):
         assert (port.get_name(), port.size()) == (name, size)
-    assert level.get_posture_input_port().get_name() == "posture"
-    assert level.get_soles_input_port().get_name() == "soles"
-    assert level.get_com_input_port().get_name() == "com"
+    assert level.GetInputPort("posture").get_name() == "posture"
+    assert level.GetInputPort("soles").get_name() == "soles"
+    assert level.GetInputPort("com").get_name() == "com"
 
 
 def test_an_upright_body_keeps_its_posture(level):
     simulator = simulator_of(level)
     simulator.AdvanceTo(0.2)
-    np.testing.assert_allclose(level.get_alpha_output_port().Eval(simulator.get_context()), 0.0, atol=1e-15)
+    np.testing.assert_allclose(level.GetOutputPort("alpha").Eval(simulator.get_context()), 0.0, atol=1e-15)
     np.testing.assert_allclose(np.concatenate(bend(level, simulator)), 0.0, atol=1e-15)
 
 
@@ -100,18 +100,18 @@ def test_rates_are_what_the_angles_do_until_the_next_update(level):
     for k in range(5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
         angles, rates = bend(level, simulator)
-        alpha, alpha_rate = np.split(level.get_alpha_output_port().Eval(simulator.get_context()), 2)
+        alpha, alpha_rate = np.split(level.GetOutputPort("alpha").Eval(simulator.get_context()), 2)
         assert np.abs(rates).max() > 0
         simulator.AdvanceTo((k + 1.5) * PERIOD)
         np.testing.assert_allclose(bend(level, simulator)[0], angles + PERIOD * rates, atol=1e-12)
-        now = level.get_alpha_output_port().Eval(simulator.get_context())[:2]
+        now = level.GetOutputPort("alpha").Eval(simulator.get_context())[:2]
         np.testing.assert_allclose(now, alpha + PERIOD * alpha_rate, atol=1e-15)
 
 
 def test_alpha_follows_with_its_time_constant(level):
     simulator = simulator_of(level, forward=0.1)
     simulator.AdvanceTo(PARAMETERS.time_constant + 0.5 * PERIOD)
-    alpha = level.get_alpha_output_port().Eval(simulator.get_context())[0]
+    alpha = level.GetOutputPort("alpha").Eval(simulator.get_context())[0]
     assert alpha == pytest.approx(0.1 * (1 - np.exp(-1)), rel=0.05)
 
 

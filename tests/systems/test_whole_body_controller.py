@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from humanwalk.control.command import Command
-from humanwalk.control.step_planner import StepPlanner, StepPlannerParameters
 from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.systems.gait_planner import Plan
 from humanwalk.systems.whole_body_controller import WholeBodyController
+from humanwalk.walking.command import Command
+from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
 
 PERIOD = 0.004
 
@@ -40,8 +40,8 @@ def updated(controller, context):
 
 def context_with(controller, state, plan):
     context = controller.CreateDefaultContext()
-    controller.get_state_input_port().FixValue(context, state)
-    controller.get_plan_input_port().FixValue(context, plan)
+    controller.GetInputPort("state").FixValue(context, state)
+    controller.GetInputPort("plan").FixValue(context, plan)
     return context
 
 
@@ -58,8 +58,8 @@ def test_ports(controller):
 def test_both_knees_hold_the_body_up(controller, joints, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
-    torque = controller.get_torque_output_port().Eval(context)
-    assert controller.get_status_output_port().Eval(context) == pytest.approx([1, 0, 0])
+    torque = controller.GetOutputPort("torque").Eval(context)
+    assert controller.GetOutputPort("status").Eval(context) == pytest.approx([1, 0, 0])
     knee = [torque[joints.names.index(f"{side}LegTibiaMotion")] for side in ("Right", "Left")]
     assert knee[0] == pytest.approx(knee[1], abs=6.0)
     # A bent knee that carries half the body is extended: negative.
@@ -69,7 +69,7 @@ def test_both_knees_hold_the_body_up(controller, joints, standing, plan):
 def test_arms_go_to_their_posture(controller, joints, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
-    rates = controller.get_desired_state_output_port().Eval(context)[42:]
+    rates = controller.GetOutputPort("desired_state").Eval(context)[42:]
     assert rates[joints.names.index("LeftArmElbowMotion")] > 0.0
     assert rates[joints.names.index("RightArmElbowMotion")] == pytest.approx(0.0, abs=1e-9)
 
@@ -77,15 +77,15 @@ def test_arms_go_to_their_posture(controller, joints, standing, plan):
 def test_failures_are_counted_the_last_torque_is_held_and_then_let_go(controller, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
-    held = controller.get_torque_output_port().Eval(context).copy()
+    held = controller.GetOutputPort("torque").Eval(context).copy()
     broken = standing.copy()
     broken[-48:] = 1e4
-    controller.get_state_input_port().FixValue(context, broken)
+    controller.GetInputPort("state").FixValue(context, broken)
     for failures in range(1, 8):
         updated(controller, context)
-        assert controller.get_status_output_port().Eval(context) == pytest.approx([0, failures, failures])
+        assert controller.GetOutputPort("status").Eval(context) == pytest.approx([0, failures, failures])
         expected = held if failures * PERIOD <= WholeBodyParameters().hold else np.zeros(42)
-        assert controller.get_torque_output_port().Eval(context) == pytest.approx(expected)
-    controller.get_state_input_port().FixValue(context, standing)
+        assert controller.GetOutputPort("torque").Eval(context) == pytest.approx(expected)
+    controller.GetInputPort("state").FixValue(context, standing)
     updated(controller, context)
-    assert controller.get_status_output_port().Eval(context) == pytest.approx([1, 7, 0])
+    assert controller.GetOutputPort("status").Eval(context) == pytest.approx([1, 7, 0])

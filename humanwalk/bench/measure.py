@@ -1,0 +1,107 @@
+"""Measures scenarios in processes of their own and puts the repeats together."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from humanwalk.bench.profile import UPSTREAM
+from humanwalk.bench.result import BenchResult, ScenarioCost, machine
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario
+
+SOLVERS = ("InverseKinematicsSolver", "WholeBodyController")
+"""Systems whose work is a mathematical program."""
+
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+"""Environment of a process on one core."""
+
+_FRESH = "import time; began = time.perf_counter(); from humanwalk.bench.fresh import main; main(began)"
+
+
+def bench(
+    scenarios: Sequence[str],
+    overrides: Mapping[str, str],
+    repeats: int,
+    on_progress: Callable[[str, int, int], None] = lambda name, done, all_: None,
+    on_result: Callable[[BenchResult], None] = lambda result: None,
+) -> BenchResult:
+    """Measure scenarios, each repeat in a process of its own on one core, repeats of all scenarios interleaved.
+
+    Args:
+        scenarios: names of shipped ones, or paths.
+        overrides: see `load_scenario`; the duration, too.
+        repeats: how often each is measured.
+        on_progress: called before each repeat with the scenario, the repeats done and those of all scenarios.
+        on_result: called after each repeat with what was found so far.
+
+    Raises:
+        ParameterError: a scenario cannot be simulated for so long, in one line.
+    """
+    durations = {scenario: load_scenario(scenario, overrides).duration for scenario in scenarios}
+    found: dict[str, list[dict[str, Any]]] = {scenario: [] for scenario in durations}
+    todo = len(found) * repeats
+    result = BenchResult({}, repeats, dict.fromkeys(found, 0), dict(overrides), machine())
+    for repeat in range(repeats):
+        for place, scenario in enumerate(found):
+            on_progress(scenario, repeat * len(found) + place, todo)
+            found[scenario].append(_repeat(scenario, overrides))
+            cost = put_together(found[scenario], durations[scenario])
+            result = replace(
+                result,
+                scenarios=result.scenarios | {scenario: cost},
+                done=result.done | {scenario: repeat + 1},
+                machine=machine(),
+            )
+            on_result(result)
+    return result
+
+
+def _repeat(scenario: str, overrides: Mapping[str, str]) -> dict[str, Any]:
+    command = [sys.executable, "-c", _FRESH, json.dumps([scenario, overrides])]
+    done = subprocess.run(command, env=os.environ | ONE_THREAD, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        reason = (done.stderr.strip() or f"exit code {done.returncode}").splitlines()[-1]
+        raise ParameterError(f"{scenario}: could not be measured: {reason}; does `humanwalk walk {scenario}` run?")
+    answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    if "refusal" in answer:
+        raise ParameterError(answer["refusal"])
+    return answer
+
+
+def put_together(repeats: Sequence[Mapping[str, Any]], duration: float) -> ScenarioCost:
+    """One scenario's cost out of the measures of its repeats, see `measure_repeat`.
+
+    Every repeat does the same work turn by turn. So the median is taken of every turn over the repeats, and what
+    disturbed one turn of one repeat does not count; their sum is the cost of the walk.
+    """
+
+    def of_turns(simulation: str, clock: int) -> float:
+        turns = np.array([repeat["turns"][simulation] for repeat in repeats])[:, :, clock]
+        return float(np.median(turns, axis=0).sum()) / duration
+
+    def median(measure: Callable[[Mapping[str, Any]], float]) -> float:
+        return float(np.median([measure(repeat) for repeat in repeats]))
+
+    names = sorted(set(repeats[0]["profile"]) - {UPSTREAM})
+    by_system = {name: median(lambda repeat, name=name: repeat["profile"][name]) / duration for name in names}  # type: ignore[misc]
+    wall, cpu = of_turns("full", 0), of_turns("full", 1)
+    unrecorded, plant = of_turns("unrecorded", 1), of_turns("bare", 1)
+    solvers = sum(by_system.get(name, 0.0) for name in SOLVERS)
+    return ScenarioCost(
+        wall=wall,
+        cpu=cpu,
+        plant=plant,
+        solvers=solvers,
+        systems=unrecorded - plant - solvers,
+        logging=cpu - unrecorded,
+        by_system=dict(sorted(by_system.items(), key=lambda item: -item[1])),
+        startup_s=median(lambda repeat: repeat["startup_s"]),
+        peak_memory_MB=median(lambda repeat: repeat["peak_memory_MB"]),
+        duration_s=duration,
+    )

@@ -1,0 +1,40 @@
+"""A simulation as `simulate` does it, that goes on when it is told to and says what that took."""
+
+from humanwalk.bench.cost import Cost, cost_of
+from humanwalk.run.monitor import Monitor
+from humanwalk.run.simulate import Prepared, prepare
+from humanwalk.scenario import Scenario
+
+
+class TimedWalk:
+    """A scenario's simulation, initialised, with the monitor that ends it at a fall.
+
+    Attributes:
+        prepared: simulator, plant and recorder.
+    """
+
+    def __init__(self, scenario: Scenario, record: bool = True) -> None:
+        """Make and initialise it, with or without recording."""
+        self.prepared: Prepared = prepare(scenario, record=record)
+        self._monitor = Monitor(self.prepared.watched)
+        self.prepared.simulator.Initialize()
+
+    @property
+    def ended(self) -> str:
+        """Why the simulation ended, see Monitor; empty while it goes on."""
+        return self._monitor.reason
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self.prepared.simulator.get_context().get_time())
+
+    def make_table(self) -> Cost:
+        """Make the table of what was recorded; returns the cost."""
+        recorder = self.prepared.recorder
+        assert recorder is not None
+        return cost_of(lambda: recorder.table(self.prepared.simulator.get_context()))
+
+    def advance(self, until: float) -> Cost:
+        """Go on to a simulated time [s], unless it has ended; returns the cost."""
+        return cost_of(lambda: self._monitor.advance(self.prepared.simulator, until))

@@ -1,0 +1,195 @@
+"""One walk from the command line: simulate with a progress bar, write the run folder, print the summary."""
+
+import json
+import shutil
+import tempfile
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from humanwalk.files import write_text
+from humanwalk.motion.motion_table import read_motion_table
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room, write_run
+from humanwalk.run.simulate import Outcome, simulate
+from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
+from humanwalk.view.plots import write_plots
+from humanwalk.view.replay import make_meshcat, static_page
+
+
+def walk_and_write(
+    scenario: str,
+    overrides: Mapping[str, str],
+    output: Path | None,
+    *,
+    live: bool,
+    replay: bool,
+    plots: bool,
+    console: Console,
+    checkpoint_period: float = 60.0,
+) -> Run:
+    """Simulate a scenario and write everything that comes out of it.
+
+    Args:
+        scenario: name or path.
+        overrides: see `load_scenario`.
+        output: folder of the run, or None for the next free one under runs/.
+        live: watch in the browser while it is simulated.
+        replay, plots: whether to write them.
+        console: where progress and summary go.
+        checkpoint_period: seconds on the clock after which an unfinished run is written, again and again; a program
+            that is killed leaves the last of them.
+
+    Raises:
+        ParameterError: bad input; nothing is left behind half-written.
+    """
+    loaded = load_scenario(scenario, overrides)
+    name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
+    meshcat = make_meshcat() if live or replay else None
+    if live and meshcat is not None:
+        console.print(f"live at {meshcat.web_url()}")
+    path, made = new_run_folder(output, name)
+    try:
+        require_room(path, loaded)
+        with claimed(path):
+            outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
+            run = _write_or_rescue(path, outcome, name)
+    except BaseException:
+        # Nothing was recorded: an empty folder would only be in the way of the next attempt.
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
+        raise
+    if not run.summary["physics"]:
+        console.print("no physics: joints and pelvis are where the recording has them; no forces, torques or balance")
+    with console.status("writing replay and plots"):
+        if replay and meshcat is not None:
+            write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}"))
+        if plots and run.summary["physics"]:
+            write_plots(run)
+    console.print(summary_table(run.summary))
+    console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
+    if replay:
+        console.print(f"look at it: humanwalk replay {run.path}")
+    return run
+
+
+def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> dict[str, str]:
+    """Overrides for a scenario that follows a recording to its end, with or without physics.
+
+    Raises:
+        ParameterError: the recording cannot be read.
+    """
+    time = read_motion_table(recording).time
+    # JSON is YAML, and quotes whatever a path may hold.
+    overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
+    overrides["description"] = json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}")
+    overrides["follow.kinematic"] = str(kinematic).lower()
+    if mapping is not None:
+        overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
+    return overrides
+
+
+def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
+    """Write the run into its folder, or, where that fails, into one for temporary files: it took long to simulate.
+
+    Raises:
+        ParameterError: it could not be written to `path`; says where it is.
+    """
+    try:
+        return write_run(path, outcome, name)
+    except ParameterError as error:
+        rescue = Path(tempfile.mkdtemp(prefix=f"humanwalk-{name}-"))
+        try:
+            write_run(rescue, outcome, name)
+        except ParameterError:
+            shutil.rmtree(rescue, ignore_errors=True)
+            raise error from None
+        raise ParameterError(f"{error}; the run is saved in {rescue}") from None
+
+
+def _simulate_with_progress(
+    scenario: Scenario,
+    name: str,
+    path: Path,
+    meshcat: Any,
+    live: bool,
+    checkpoint_period: float,
+    console: Console,
+) -> Outcome:
+    def checkpoint(so_far: Outcome) -> None:
+        # A disk that is full now may have room at the end.
+        with suppress(ParameterError):
+            write_run(path, so_far, name)
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.1f} of {task.total:g} s"),
+        TimeRemainingColumn(),
+    )
+    progress = Progress(*columns, console=console, transient=True)
+    task = progress.add_task(name, total=scenario.duration)
+
+    def show(time: float) -> None:
+        # Started late, so that a scenario that cannot be simulated is answered with a line and no bar.
+        if not progress.live.is_started:
+            progress.start()
+            if not console.is_terminal:
+                console.print(f"{name}: walking {scenario.duration:g} s")
+        progress.update(task, completed=time)
+
+    try:
+        return simulate(
+            scenario,
+            meshcat,
+            on_progress=show,
+            realtime_rate=1.0 if live else 0.0,
+            on_checkpoint=checkpoint,
+            checkpoint_period=checkpoint_period,
+        )
+    finally:
+        if progress.live.is_started:
+            progress.stop()
+
+
+def summary_table(summary: Mapping[str, Any]) -> Table:
+    """The summary's main figures for people."""
+    table = Table(title=f"{summary['scenario']}: {summary['end']} at {summary['duration_s']:.2f} s", show_header=False)
+    table.add_column(justify="left")
+    table.add_column(justify="right")
+    table.add_column(justify="left")
+
+    def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
+        table.add_row(what, "-" if value is None else format(per_unit * value, form), unit)
+
+    commanded = summary["commanded_speed_m_s"]
+    row(
+        "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})",
+        summary["mean_speed_m_s"],
+        ".3f",
+        "m/s",
+    )
+    row("distance", summary["distance_m"], ".2f", "m")
+    row("steps", summary["steps"], "d", "")
+    for side in ("right", "left"):
+        row(f"{side} foot lift", summary["foot_lift_m"][side], ".1f", "cm", per_unit=100)
+        row(f"{side} foot off its line", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
+    row("lateral drift", summary["lateral_drift_m"], ".2f", "cm", per_unit=100)
+    row("pelvis off its reference, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
+    if summary["external_support"]:
+        row("EXTERNAL SUPPORT force, rms", summary["support_force_rms_N"], ".0f", "N")
+        row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
+    if summary["qp_failures"] is not None:
+        row("whole-body programs without solution", summary["qp_failures"], "d", "")
+    if summary["physics"]:
+        name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
+        row(f"peak torque, {name}", torque, ".0f", "N m")
+        row("cost of transport", summary["cost_of_transport"], ".2f", "")
+    row("real-time factor", summary["realtime_factor"], ".2f", "")
+    return table

@@ -1,0 +1,5 @@
+"""A run for other programs: OpenSim, motion-capture software (C3D), MATLAB, spreadsheets."""
+
+from humanwalk.exchange.export import FORMATS, export_run
+
+__all__ = ["FORMATS", "export_run"]

@@ -1,0 +1,83 @@
+"""What a run's recorded numbers mean in space: plant positions, marker paths, ground forces per foot."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from humanwalk.body import SIDES, Side
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.markers import markers
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.measures.signals import TIME, matrix, signal_columns
+from humanwalk.numerics import Array
+from humanwalk.run.folder import Run
+
+
+@dataclass(frozen=True)
+class GroundForce:
+    """What a force plate under one foot would show, in W; all of it is defined at every time.
+
+    Attributes:
+        force: on the foot [N], shape (rows, 3); zero while unloaded.
+        point: centre of pressure [m], shape (rows, 3). While the foot is unloaded it glides in a straight line from
+            where it lifted to where it will land (before the first and after the last contact it stays), so that
+            filters and splines of other programs find no jump.
+        free_moment: about the vertical through `point` [N m], shape (rows,); zero while unloaded.
+    """
+
+    force: Array
+    point: Array
+    free_moment: Array
+
+
+def positions(run: Run) -> Array:
+    """Plant positions q of every row, shape (rows, 49)."""
+    joints = JointMap.of(kinematics_plant(run.scenario.subject))
+    return matrix(run.signals, signal_columns(joints)["state"][: joints.num_positions])
+
+
+def marker_paths(run: Run) -> dict[str, Array]:
+    """Position of every marker in W [m] by name, shape (rows, 3) each."""
+    subject = run.scenario.subject
+    plant = kinematics_plant(subject)
+    context = plant.CreateDefaultContext()
+    on_body: dict[str, list[tuple[str, tuple[float, float, float]]]] = {}
+    for marker in markers(subject.skeleton):
+        on_body.setdefault(marker.body, []).append((marker.name, marker.position))
+    rows = positions(run)
+    paths = {marker.name: np.empty((rows.shape[0], 3)) for marker in markers(subject.skeleton)}
+    bodies = [
+        (plant.GetBodyByName(body), [name for name, _ in stuck], np.array([p for _, p in stuck]).T)
+        for body, stuck in on_body.items()
+    ]
+    for i, q in enumerate(rows):
+        plant.SetPositions(context, q)
+        for body, names, p_BM in bodies:
+            p_WM = body.EvalPoseInWorld(context) @ p_BM
+            for j, name in enumerate(names):
+                paths[name][i] = p_WM[:, j]
+    return paths
+
+
+def ground_force(run: Run, side: Side) -> GroundForce:
+    """The ground's force on one foot."""
+    signals, foot = run.signals, f"{side.lower()}_foot"
+    time = signals[TIME].to_numpy()
+    loaded = signals[f"{foot}.loaded"].to_numpy() > 0.5
+    force = matrix(signals, [f"{foot}.force_{axis}_N" for axis in "xyz"]) * loaded[:, None]
+    point = np.zeros_like(force)
+    if loaded.any():
+        for i, axis in enumerate("xyz"):
+            cop = signals[f"{foot}.cop_{axis}_m"].to_numpy()
+            point[:, i] = np.interp(time, time[loaded], cop[loaded])
+    return GroundForce(force, point, signals[f"{foot}.free_moment_N_m"].to_numpy() * loaded)
+
+
+def ground_forces(run: Run) -> dict[Side, GroundForce]:
+    """The ground's force on both feet."""
+    return {side: ground_force(run, side) for side in SIDES}
+
+
+def sample_rate(run: Run) -> float:
+    """Rows per second of the record [1/s]."""
+    return 1.0 / run.scenario.recording.signal_period

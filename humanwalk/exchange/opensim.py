@@ -1,0 +1,126 @@
+"""A run for OpenSim: angles, torques, ground forces as external loads, and markers.
+
+Axes are OpenSim's: x forward, y up, z right. Joints are named and signed as in the full-body model of Rajagopal et al.
+(2016), see `humanwalk.body.opensim_names`; joints that it has not keep their own names, which OpenSim passes over.
+"""
+
+import io
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from humanwalk.body import SIDES
+from humanwalk.body.opensim_names import (
+    COORDINATES,
+    PELVIS_ROTATIONS,
+    PELVIS_TRANSLATIONS,
+    R_OW,
+    SPINE_COORDINATES,
+)
+from humanwalk.exchange.motion import ground_forces, marker_paths, sample_rate
+from humanwalk.files import write_text
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.measures.summary import joint_names
+from humanwalk.motion.motion_table import MotionTable, storage_text
+from humanwalk.numerics import Array
+from humanwalk.run.folder import Run
+
+EXTERNAL_LOADS = """<?xml version="1.0" encoding="UTF-8" ?>
+<OpenSimDocument Version="40000">
+	<ExternalLoads name="external_loads">
+		<objects>
+{forces}		</objects>
+		<datafile>ground_forces.mot</datafile>
+	</ExternalLoads>
+</OpenSimDocument>
+"""
+EXTERNAL_FORCE = """			<ExternalForce name="{side}_foot">
+				<applied_to_body>calcn_{letter}</applied_to_body>
+				<force_expressed_in_body>ground</force_expressed_in_body>
+				<point_expressed_in_body>ground</point_expressed_in_body>
+				<force_identifier>ground_force_{letter}_v</force_identifier>
+				<point_identifier>ground_force_{letter}_p</point_identifier>
+				<torque_identifier>ground_torque_{letter}_</torque_identifier>
+			</ExternalForce>
+"""
+
+
+def write_opensim(run: Run, folder: Path) -> list[Path]:
+    """Write angles.mot, torques.sto, ground_forces.mot, external_loads.xml and markers.trc."""
+    loads = "".join(EXTERNAL_FORCE.format(side=side.lower(), letter=side[0].lower()) for side in SIDES)
+    texts = {
+        "angles.mot": storage_text("Coordinates", angles(run)),
+        "torques.sto": storage_text("Actuator torques", torques(run)),
+        "ground_forces.mot": storage_text("Ground forces", external_loads(run)),
+        "external_loads.xml": EXTERNAL_LOADS.format(forces=loads),
+        "markers.trc": trc_text("markers.trc", marker_paths(run), run.signals[TIME].to_numpy(), sample_rate(run)),
+    }
+    for name, text in texts.items():
+        write_text(folder / name, text)
+    return [folder / name for name in texts]
+
+
+def angles(run: Run) -> MotionTable:
+    """Place [m] and turn [deg] of the pelvis, and every joint's angle [deg]; the back's sums besides."""
+    signals = run.signals
+    quaternion = matrix(signals, [f"pelvis.quaternion_{axis}" for axis in "wxyz"])
+    R_WP = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()
+    # Both frames turned: at rest OpenSim's pelvis is parallel to its ground as ours is to W.
+    turns = Rotation.from_matrix(R_OW @ R_WP @ R_OW.T).as_euler("ZXY")
+    columns: dict[str, Array] = {
+        name: np.rad2deg(np.unwrap(turn)) for name, turn in zip(PELVIS_ROTATIONS, turns.T, strict=True)
+    }
+    place = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"]) @ R_OW.T
+    columns |= zip(PELVIS_TRANSLATIONS, place.T, strict=True)
+    own = {name: np.rad2deg(signals[f"{name}.angle_rad"].to_numpy()) for name in joint_names(signals)}
+    for name, angle in own.items():
+        coordinate, factor = COORDINATES.get(name, (name, 1.0))
+        columns[coordinate] = factor * angle
+    for coordinate, (joints, factor) in SPINE_COORDINATES.items():
+        columns[coordinate] = factor * np.sum([own[joint] for joint in joints], axis=0)
+    return _table(run, columns, in_degrees=True)
+
+
+def torques(run: Run) -> MotionTable:
+    """What every joint feels of its actuator [N m], under its coordinate's name with `_moment`."""
+    columns = {}
+    for name in joint_names(run.signals):
+        coordinate, factor = COORDINATES.get(name, (name, 1.0))
+        columns[f"{coordinate}_moment"] = factor * run.signals[f"{name}.torque_N_m"].to_numpy()
+    return _table(run, columns, in_degrees=False)
+
+
+def external_loads(run: Run) -> MotionTable:
+    """Force [N], point [m] and torque [N m] of the ground on each foot; see `GroundForce` for an unloaded one."""
+    columns: dict[str, Array] = {}
+    for side, load in ground_forces(run).items():
+        letter = side[0].lower()
+        columns |= zip([f"ground_force_{letter}_v{axis}" for axis in "xyz"], (load.force @ R_OW.T).T, strict=True)
+        columns |= zip([f"ground_force_{letter}_p{axis}" for axis in "xyz"], (load.point @ R_OW.T).T, strict=True)
+        zero = np.zeros_like(load.free_moment)
+        columns |= zip(
+            [f"ground_torque_{letter}_{axis}" for axis in "xyz"], (zero, load.free_moment, zero), strict=True
+        )
+    return _table(run, columns, in_degrees=False)
+
+
+def trc_text(file_name: str, paths: dict[str, Array], time: Array, rate: float) -> str:
+    """Marker paths in W [m] as a TRC file: millimetres, OpenSim's axes."""
+    rows = time.size
+    text = io.StringIO()
+    text.write(f"PathFileType\t4\t(X/Y/Z)\t{file_name}\n")
+    text.write("DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n")
+    text.write(f"{rate:.10g}\t{rate:.10g}\t{rows}\t{len(paths)}\tmm\t{rate:.10g}\t1\t{rows}\n")
+    text.write("Frame#\tTime\t" + "\t\t\t".join(paths) + "\t\t\n")
+    text.write("\t\t" + "\t".join(f"{axis}{i}" for i in range(1, len(paths) + 1) for axis in "XYZ") + "\n\n")
+    data = np.column_stack([time, *(1000.0 * path @ R_OW.T for path in paths.values())])
+    for i, row in enumerate(data):
+        text.write(f"{i + 1}\t" + "\t".join(f"{value:.10g}" for value in row) + "\n")
+    return text.getvalue()
+
+
+def _table(run: Run, columns: dict[str, Array], in_degrees: bool) -> MotionTable:
+    # -0 is a number that surprises people.
+    data = np.column_stack(list(columns.values())) + 0.0
+    return MotionTable(tuple(columns), run.signals[TIME].to_numpy(), data, in_degrees)

@@ -1,0 +1,1 @@
+"""Measures of a recorded walk: events, spatiotemporal measures, likeness to human gait."""

@@ -1,0 +1,347 @@
+"""A walk beside real people: its angles over the gait cycle and the measures of its steps, stride by stride.
+
+People's angles are those of Schwartz, Rozumalski, Trost (2008), "The effect of walking speed on the gait of typically
+developing children", J. Biomech. 41(8) 1639-1650, at the speed of their choice. Of other measures people's values are
+given where a source is known, and none where it is not.
+"""
+
+import csv
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from importlib.resources import files
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+from scipy.signal import butter, sosfiltfilt
+from scipy.spatial.transform import Rotation
+
+from humanwalk.body import SIDES, Side
+from humanwalk.measures.gait_measures import (
+    Footfalls,
+    cadence,
+    double_support_shares,
+    footfalls,
+    other_side,
+    stance_shares,
+    step_lengths,
+    step_widths,
+    stride_lengths,
+    stride_times,
+)
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.measures.summary import GRAVITY, cost_of_transport, steady_from
+from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import Scenario
+
+CYCLE = np.linspace(0.0, 100.0, 101)
+"""Where in a gait cycle curves are compared [%]."""
+
+TERMINAL_STANCE = (31.0, 50.0)
+"""From heel rise to the landing of the other foot [% of the gait cycle]: Perry and Burnfield (2010), chapter 2."""
+
+FORCE_CUTOFF_HZ = 15.0
+"""The ground force of walking has 99 % of its power below: Antonsson and Mann (1985), J. Biomech. 18(1) 39-47."""
+
+LEAST_DIP = 0.05
+"""Two humps have a dip between them of at least this share of body weight."""
+
+FEWEST_STRIDES = 2
+WIDEST_ANGLE = np.radians(20.0)
+"""Strides of each leg that a comparison needs, and how far from straight ahead they may go."""
+
+PEOPLE_DATA = "models/normative_gait/schwartz2008_free_angles.csv"
+PERRY = "Perry, Burnfield (2010), Gait Analysis"
+ORENDURFF = "Orendurff et al. (2004), JRRD 41(6A) 829"
+DONELAN = "Donelan, Kram, Kuo (2001), Proc. R. Soc. B 268:1985"
+SCHWARTZ = "Schwartz et al. (2008)"
+
+PREFERRED_STEP_WIDTH = 0.13
+"""Of people, per leg length; abstract of Donelan, Kram, Kuo (2001)."""
+
+COM_EXCURSIONS = {
+    "vertical": ((2.74e-2, 0.52e-2), (4.83e-2, 0.92e-2)),
+    "lateral": ((6.99e-2, 1.34e-2), (3.85e-2, 1.41e-2)),
+}
+COM_SPEEDS = (0.7, 1.6)
+"""People's mean and standard deviation at two speeds [m], and the speeds [m/s]; abstract of Orendurff et al. (2004)."""
+
+
+def _joint(motion: str, signals: pa.Table, side: Side) -> Array:
+    return np.degrees(matrix(signals, [f"{side}{motion}.angle_rad"])[:, 0])
+
+
+def _pelvis(axis: int, left: int, right: int, signals: pa.Table, side: Side) -> Array:
+    quaternions = matrix(signals, [f"pelvis.quaternion_{part}" for part in "xyzw"])
+    angles: Array = Rotation.from_quat(quaternions).as_euler("ZXY")[:, axis]
+    return np.degrees(angles * (left if side == "Left" else right))
+
+
+@dataclass(frozen=True)
+class Angle:
+    """An angle that is compared with people's.
+
+    Attributes:
+        positive: its positive sense, in a word.
+        people: the quantity of people's data.
+        of: the angle of a record as one leg sees it [deg], shape (rows,).
+    """
+
+    positive: str
+    people: str
+    of: Callable[[pa.Table, Side], Array]
+
+
+JOINTS = {"hip": "LegFemurMotion", "knee": "LegTibiaMotion", "ankle": "LegAnkleMotion"}
+"""The sagittal joint of a leg by its name in ANGLES, without its side."""
+
+ANGLES = {
+    "hip": Angle("flexion", "hip_flexion_deg", partial(_joint, JOINTS["hip"])),
+    "knee": Angle("flexion", "knee_flexion_deg", partial(_joint, JOINTS["knee"])),
+    "ankle": Angle("dorsiflexion", "ankle_dorsiflexion_deg", partial(_joint, JOINTS["ankle"])),
+    "pelvis tilt": Angle("forward", "pelvis_anterior_tilt_deg", partial(_pelvis, 2, 1, 1)),
+    "pelvis obliquity": Angle("side up", "pelvis_up_obliquity_deg", partial(_pelvis, 1, 1, -1)),
+    "pelvis rotation": Angle("side forward", "pelvis_internal_rotation_deg", partial(_pelvis, 0, -1, 1)),
+}
+"""Every angle by name. The pelvis turns by rotation, obliquity, tilt in this order: Baker (2001), Gait Posture 13:1-6.
+
+Tilt, and with it hip flexion, is counted from different zeros: people's pelvis plane leans some 10 degrees forward in
+upright standing, where this model's pelvis is level. `Likeness.difference` has that, `Likeness.correlation` has not.
+"""
+
+
+@cache
+def people(quantity: str) -> tuple[Array, Array, Array]:
+    """Gait cycle [%], mean and standard deviation [deg] of an angle of able-bodied people: see PEOPLE_DATA."""
+    text = files("humanwalk").joinpath(PEOPLE_DATA).read_text(encoding="utf-8")
+    rows = [row for row in csv.DictReader(text.splitlines()) if row["quantity"] == quantity]
+    cycle, mean, sd = (np.array([float(row[key]) for row in rows]) for key in ("gait_cycle_percent", "mean", "sd"))
+    return cycle, mean, sd
+
+
+def over_strides(signals: pa.Table, foot: Footfalls, values: Array) -> Array:
+    """A signal over every whole stride of a leg at the places of CYCLE, shape (strides, 101)."""
+    time = signals[TIME].to_numpy()
+    strides = [np.interp(time[a] + CYCLE / 100.0 * (time[b] - time[a]), time, values) for a, b in foot.strides]
+    return np.array(strides).reshape(-1, CYCLE.size)
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """How like people's mean curve an angle is; one number a stride, shape (strides,).
+
+    Attributes:
+        correlation: Pearson's, over the cycle; not a number where the angle stays the same.
+        difference: mean of the angle minus people's [deg].
+        rms: root mean square of the angle minus people's [deg].
+        inside: share of the cycle within one standard deviation of people's mean.
+    """
+
+    correlation: Array
+    difference: Array
+    rms: Array
+    inside: Array
+
+    @staticmethod
+    def of(strides: Array, quantity: str) -> "Likeness":
+        """Of an angle over strides [deg], shape (strides, 101), and a quantity of people's data."""
+        cycle, mean, sd = people(quantity)
+        mean, sd = np.interp(CYCLE, cycle, mean), np.interp(CYCLE, cycle, sd)
+        apart = strides - mean
+        swing, peoples = strides - strides.mean(axis=1, keepdims=True), mean - mean.mean()
+        norms = np.linalg.norm(swing, axis=1) * np.linalg.norm(peoples)
+        return Likeness(
+            correlation=np.divide(swing @ peoples, norms, out=np.full(len(strides), np.nan), where=norms > 1e-6),
+            difference=apart.mean(axis=1),
+            rms=np.sqrt((apart**2).mean(axis=1)),
+            inside=(np.abs(apart) <= sd).mean(axis=1),
+        )
+
+
+@dataclass(frozen=True)
+class People:
+    """People's values of a measure, from low to high (of a mean and standard deviation: one to both sides)."""
+
+    low: float
+    high: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure of a walk beside people's.
+
+    Attributes:
+        name, unit: what it is; "" for a pure number, BW for body weights.
+        values: one for each step, stride or stance of both legs; a single one for a measure of the whole walk.
+        people: None where no source is known.
+    """
+
+    name: str
+    unit: str
+    values: Array
+    people: People | None = None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A walk beside people.
+
+    Attributes:
+        strides: how many of each leg were compared.
+        curves: of every angle in ANGLES the likeness of each leg's strides.
+        measures: of steps, ground force, centre of mass and effort.
+    """
+
+    strides: Mapping[Side, int]
+    curves: Mapping[str, Mapping[Side, Likeness]]
+    measures: tuple[Measure, ...]
+
+
+def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
+    """Compare the steady walk of a record with people.
+
+    Raises:
+        ParameterError: fewer than FEWEST_STRIDES strides of a leg, or a way that does not lead straight ahead.
+    """
+    begin = steady_from(scenario)
+    feet = {side: footfalls(signals, side, begin) for side in SIDES}
+    _require_walk(signals, feet, begin)
+    curves = {
+        name: {
+            side: Likeness.of(over_strides(signals, feet[side], angle.of(signals, side)), angle.people)
+            for side in SIDES
+        }
+        for name, angle in ANGLES.items()
+    }
+    return Comparison(
+        strides={side: len(foot.strides) for side, foot in feet.items()},
+        curves=curves,
+        measures=tuple(_measures(signals, scenario, feet, begin)),
+    )
+
+
+def late_stance_knee(strides: Array) -> Array:
+    """Least flexion in terminal stance, of knee flexion over strides [deg], shape (strides, 101) -> (strides,)."""
+    begin, end = TERMINAL_STANCE
+    least: Array = strides[:, (begin <= CYCLE) & (end >= CYCLE)].min(axis=1)
+    return least
+
+
+def force_humps(signals: pa.Table, side: Side, foot: Footfalls, weight: float) -> Array:
+    """Vertical force of every whole stance: first hump, dip and second hump per body weight, shape (stances, 3).
+
+    Humps are the greatest force in either half of the stance, the dip the least between them, below FORCE_CUTOFF_HZ:
+    the impact of the heel is no hump.
+
+    Args:
+        weight: of the body [N].
+    """
+    time = signals[TIME].to_numpy()
+    low_pass = butter(2, FORCE_CUTOFF_HZ, fs=1.0 / np.median(np.diff(time)), output="sos")
+    force = sosfiltfilt(low_pass, signals[f"{side.lower()}_foot.force_z_N"].to_numpy()) / weight
+    humps = []
+    for a, b in foot.stances:
+        middle = (a + b) // 2
+        first, second = a + int(force[a:middle].argmax()), middle + int(force[middle:b].argmax())
+        humps.append((force[first], force[first : second + 1].min(), force[second]))
+    return np.array(humps).reshape(-1, 3)
+
+
+def has_two_humps(humps: Array) -> npt.NDArray[np.bool_]:
+    """Whether the force of a stance dips by LEAST_DIP or more, shape (stances, 3) -> (stances,)."""
+    first, dip, second = humps.T
+    dips: npt.NDArray[np.bool_] = np.minimum(first, second) - dip >= LEAST_DIP
+    return dips
+
+
+def com_excursions(signals: pa.Table, foot: Footfalls, axis: str) -> Array:
+    """Range of the centre of mass in every stride along y or z, off the straight line through the stride's ends [m]."""
+    place = signals[f"com.{axis}_m"].to_numpy()
+    return np.array([np.ptp(place[a : b + 1] - np.linspace(place[a], place[b], b + 1 - a)) for a, b in foot.strides])
+
+
+def peak_moments(signals: pa.Table, motion: str, sign: int, side: Side, foot: Footfalls) -> Array:
+    """Greatest torque of a leg's joint in every stride, flexing for sign 1 and extending for -1 [N m]."""
+    torque = sign * signals[f"{side}{motion}.torque_N_m"].to_numpy()
+    return np.array([torque[a:b].max() for a, b in foot.strides])
+
+
+def people_com_excursion(direction: str, speed: float) -> People | None:
+    """People's range of the centre of mass at a speed [m/s]: between the two speeds of the source, None outside."""
+    if not COM_SPEEDS[0] <= speed <= COM_SPEEDS[1]:
+        return None
+    mean, sd = (float(np.interp(speed, COM_SPEEDS, ends)) for ends in zip(*COM_EXCURSIONS[direction], strict=True))
+    return People(mean - sd, mean + sd, f"{ORENDURFF}, at this speed")
+
+
+def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls], begin: float) -> Iterator[Measure]:
+    mass, time = scenario.subject.mass, signals[TIME].to_numpy()
+    weight, leg = mass * GRAVITY, scenario.subject.skeleton.hip_height
+
+    def each(measure: Callable[[Side, Footfalls], Array]) -> Array:
+        return np.concatenate([measure(side, foot) for side, foot in feet.items()])
+
+    free = f"{PERRY}, women and men at their own speed"
+    speeds = each(lambda side, foot: stride_lengths(signals, side, foot) / stride_times(signals, foot))
+    yield Measure("speed", "m/s", speeds, People(1.28, 1.43, free))
+    lengths = each(lambda side, foot: step_lengths(signals, side, foot))
+    yield Measure("step length", "m", lengths, People(0.64, 0.73, free))
+    yield Measure("cadence", "1/min", np.array([cadence(signals, feet)]), People(111.0, 117.0, free))
+    stances = each(lambda side, foot: stance_shares(signals, foot))
+    yield Measure("share of stance", "", stances, People(0.60, 0.62, PERRY))
+    both = each(lambda side, foot: double_support_shares(foot, feet[other_side(side)]))
+    yield Measure("share of double support", "", both, People(0.20, 0.24, PERRY))
+    wanted = PREFERRED_STEP_WIDTH * leg
+    widths = each(lambda side, foot: step_widths(signals, side, foot))
+    yield Measure("step width", "m", widths, People(wanted, wanted, f"{DONELAN}: 0.13 of the leg's length"))
+
+    for direction, axis in (("vertical", "z"), ("lateral", "y")):
+        excursions = np.concatenate([com_excursions(signals, foot, axis) for foot in feet.values()])
+        peoples = people_com_excursion(direction, float(speeds.mean()))
+        yield Measure(f"centre of mass, {direction} range", "m", excursions, peoples)
+
+    humps = np.concatenate([force_humps(signals, side, foot, weight) for side, foot in feet.items()])
+    names = {"first hump": 1.1, "dip": 0.8, "second hump": 1.1}
+    for column, (name, share) in zip(humps.T, names.items(), strict=True):
+        yield Measure(f"ground force, {name}", "BW", column, People(share, share, PERRY))
+    yield Measure(
+        "share of stances with two humps", "", np.array([has_two_humps(humps).mean()]), People(1.0, 1.0, PERRY)
+    )
+
+    knee = ANGLES["knee"]
+    least = each(lambda side, foot: late_stance_knee(over_strides(signals, foot, knee.of(signals, side))))
+    yield Measure("least knee flexion, terminal stance", "deg", least, _people_late_stance_knee())
+    cost = cost_of_transport(signals, time >= begin, mass)
+    yield Measure("cost of transport", "", np.array([np.nan if cost is None else cost]))
+    for joint, motion in JOINTS.items():
+        bends = ("dorsiflexion", "plantarflexion") if joint == "ankle" else ("flexion", "extension")
+        for name, sign in zip(bends, (1, -1), strict=True):
+            peaks = each(partial(peak_moments, signals, motion, sign)) / mass
+            yield Measure(f"moment, {joint} {name}", "N m/kg", peaks)
+
+
+def _people_late_stance_knee() -> People:
+    cycle, mean, sd = people("knee_flexion_deg")
+    curves = np.array([np.interp(CYCLE, cycle, curve) for curve in (mean - sd, mean + sd)])
+    low, high = late_stance_knee(curves)
+    return People(float(low), float(high), SCHWARTZ)
+
+
+def _require_walk(signals: pa.Table, feet: dict[Side, Footfalls], begin: float) -> None:
+    counts = {side: len(foot.strides) for side, foot in feet.items()}
+    if min(counts.values()) < FEWEST_STRIDES:
+        raise ParameterError(
+            f"strides: {counts['Right']} of the right leg and {counts['Left']} of the left from {begin:g} s on, where"
+            f" the walk is steady; allowed: from {FEWEST_STRIDES} of each on; walk longer, or a scenario that walks"
+        )
+    for side, foot in feet.items():
+        ways = np.diff(matrix(signals, [f"{side.lower()}_sole.{axis}_m" for axis in "xy"])[foot.touchdowns], axis=0)
+        angle = float(np.abs(np.arctan2(ways[:, 1], ways[:, 0])).max())
+        if angle > WIDEST_ANGLE:
+            raise ParameterError(
+                f"strides: {np.degrees(angle):.0f} deg from straight ahead (x); allowed: up to "
+                f"{np.degrees(WIDEST_ANGLE):.0f} deg, as people's were measured; compare a straight walk"
+            )

@@ -1,0 +1,1 @@
+"""Recorded motion: joint angles read from files, as motion of the subject's body."""

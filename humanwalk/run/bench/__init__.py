@@ -1,6 +1,0 @@
-"""What simulating costs: time by its parts, memory and start-up, as medians over interleaved repeats."""
-
-from humanwalk.run.bench.measure import bench
-from humanwalk.run.bench.result import BenchResult, ScenarioCost, read_result, write_result
-
-__all__ = ["BenchResult", "ScenarioCost", "bench", "read_result", "write_result"]

@@ -1,5 +1,0 @@
-"""A run for other programs: OpenSim, motion-capture software (C3D), MATLAB, spreadsheets."""
-
-from humanwalk.run.export.write import FORMATS, export_run
-
-__all__ = ["FORMATS", "export_run"]

@@ -1,0 +1,94 @@
+"""An infinite plane through the world's origin: level ground, or one even slope."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from pydrake.geometry import Box, HalfSpace
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.plant import MultibodyPlant
+
+from humanwalk.numerics import Array
+from humanwalk.quantity import quantity
+from humanwalk.terrain.terrain import GroundProperties, surface_axes
+
+LENGTH = 60
+WIDTH = 10
+BEHIND = 6
+"""Size of the drawn floor, and how much of its length lies behind the start [m]; the half-space is infinite."""
+
+THICKNESS = 0.02
+"""Thickness of the drawn floor and of its lines [m]."""
+
+FLOOR_COLOR = np.array([0.86, 0.87, 0.86, 1.0])
+LINE_COLOR = np.array([0.60, 0.62, 0.63, 1.0])
+MARK_COLOR = np.array([0.36, 0.40, 0.43, 1.0])
+
+LINE_WIDTH = 0.012
+MARK_WIDTH = 0.03
+"""Width of the line at every meter, and at every fifth across the walk [m]."""
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Level ground by default."""
+
+    slope: float = quantity(0.0, "rad", -0.5, 0.5)
+    """Angle along x; positive goes up."""
+
+    cross_slope: float = quantity(0.0, "rad", -0.5, 0.5)
+    """Angle along y; positive goes up to the left."""
+
+    friction_coefficient: float = quantity(0.7, "", 0.05, 1.3)
+    """Coulomb coefficient between sole and ground, static and dynamic (thesis 2.5)."""
+
+    @cached_property
+    def _gradient(self) -> Array:
+        return np.array((math.tan(self.slope), math.tan(self.cross_slope)))
+
+    @cached_property
+    def _R_SW(self) -> Array:
+        return surface_axes(np.array((*-self._gradient, 1.0)))
+
+    def height(self, xy: Array) -> Array:
+        """See `Terrain.height`."""
+        height: Array = xy @ self._gradient
+        return height
+
+    def axes(self, xy: Array) -> Array:
+        """See `Terrain.axes`."""
+        return np.broadcast_to(self._R_SW, (*xy.shape[:-1], 3, 3))
+
+    def friction(self, xy: Array) -> Array:
+        """See `Terrain.friction`."""
+        return np.full(xy.shape[:-1], self.friction_coefficient)
+
+    def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
+        """Register a half-space to stand on, and a floor with a line at every meter to look at."""
+        X_WS = RigidTransform(RotationMatrix(self._R_SW.T), np.zeros(3))
+        plant.RegisterCollisionGeometry(
+            plant.world_body(), X_WS, HalfSpace(), "ground", properties(self.friction_coefficient)
+        )
+        for name, center, size, color in _floor():
+            plant.RegisterVisualGeometry(
+                plant.world_body(), X_WS @ RigidTransform(np.array(center)), Box(*size), name, color
+            )
+
+
+def _floor() -> list[tuple[str, tuple[float, float, float], tuple[float, float, float], Array]]:
+    """Boxes of the drawn floor in the surface frame: name, center [m], edges [m], color.
+
+    Floor and lines have tops of their own: of two surfaces at one height neither is drawn reliably.
+    """
+    middle = 0.5 * LENGTH - BEHIND
+    boxes = [("floor", (middle, 0.0, -0.002 - 0.5 * THICKNESS), (LENGTH, WIDTH, THICKNESS), FLOOR_COLOR)]
+    for y in range(-WIDTH // 2 + 1, WIDTH // 2):
+        size = (LENGTH, LINE_WIDTH, THICKNESS)
+        boxes.append((f"along_{y}", (middle, float(y), -0.001 - 0.5 * THICKNESS), size, LINE_COLOR))
+    for x in range(1 - BEHIND, LENGTH - BEHIND):
+        width, color = (MARK_WIDTH, MARK_COLOR) if x % 5 == 0 else (LINE_WIDTH, LINE_COLOR)
+        boxes.append((f"meter_{x}", (float(x), 0.0, -0.5 * THICKNESS), (width, WIDTH, THICKNESS), color))
+    return boxes

@@ -1,0 +1,1 @@
+"""Views of a run: replay, video, plots, report and diagram pictures."""

@@ -1,0 +1,127 @@
+"""How every plot looks: size, colours, labels and legend; matplotlib without pyplot, so nothing is global."""
+
+import base64
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from humanwalk.body.visuals import SIDE_COLORS
+from humanwalk.files import write_whole
+from humanwalk.numerics import Array
+
+FORMATS = ("png", "svg", "pdf")
+
+COLUMN_WIDTH = 5.6
+"""Width of a figure in inches; at DPI it is 896 pixels."""
+DPI = 160
+
+SIDE = SIDE_COLORS
+"""Right is blue, left is orange, as on the body."""
+AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
+"""World x, y, z in plots of one vector: neither of the two sides' colours."""
+INK = "#202020"
+DESIRED = "#bdbdbd"
+REFERENCE = "#777777"
+STANCE = "#e9edf2"
+PEOPLE, PEOPLE_LINE = "#d9d9d9", "#808080"
+"""Band and mean of people that a run is compared with."""
+
+TITLE_SIZE, LABEL_SIZE, TICK_SIZE = 9.5, 9.0, 8.0
+
+
+def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1, **subplots: Any) -> Figure:
+    """A figure of column width with rows x columns empty axes.
+
+    Args:
+        title: what is shown, with the thesis' figure number where it has one.
+        height: in inches.
+        rows, columns: of axes.
+        subplots: further arguments of `Figure.subplots`, like sharex.
+    """
+    figure = Figure(figsize=(COLUMN_WIDTH, height), layout="constrained")
+    figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_SIZE)
+    for axes in np.ravel(figure.subplots(rows, columns, **subplots)):
+        axes.tick_params(labelsize=TICK_SIZE)
+        axes.grid(True, color="#dddddd", linewidth=0.5)
+        axes.set_axisbelow(True)
+        axes.margins(x=0.0)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def label(axes: Axes, x: str, y: str) -> None:
+    """Name both axes; an empty text leaves that axis unnamed."""
+    axes.set_xlabel(x, fontsize=LABEL_SIZE)
+    axes.set_ylabel(y, fontsize=LABEL_SIZE)
+
+
+def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
+    """Legend in one line above the axes, where it hides no curve."""
+    entries = list(handles) if handles is not None else axes.get_legend_handles_labels()[0]
+    axes.legend(
+        handles=entries,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 0.98),
+        ncols=len(entries),
+        frameon=False,
+        fontsize=TICK_SIZE,
+        handlelength=1.6,
+        columnspacing=1.4,
+    )
+
+
+def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:
+    """A line through samples; what is no finite number, as at the end of a failed run, is left out."""
+    (line,) = axes.plot(x, np.where(np.isfinite(y), y, np.nan), **{"linewidth": 1.2} | style)
+    return line
+
+
+def level(axes: Axes, y: float, text: str | None = None) -> None:
+    """A dashed horizontal line to compare with; one without a text is a plain thin line, like that of zero."""
+    style, width = ("--", 0.9) if text else ("-", 0.5)
+    axes.axhline(y, color=REFERENCE, linestyle=style, linewidth=width, label=text)
+
+
+def shade(axes: Axes, x: Array, where: npt.NDArray[np.bool_], text: str) -> None:
+    """Grey bands over the stretches of x where `where` holds."""
+    axes.fill_between(
+        x, 0.0, 1.0, where=where.tolist(), transform=axes.get_xaxis_transform(), color=STANCE, linewidth=0, label=text
+    )
+
+
+def true_proportions(figure: Figure) -> None:
+    """One metre as long sideways as along, in a figure of one axes."""
+    figure.axes[0].set_aspect("equal")
+    figure.set_layout_engine("compressed")
+
+
+def save(figure: Figure, path: Path, dpi: float = DPI) -> Path:
+    """Write a figure in the format of the suffix, whole or not at all, without the date; returns the path.
+
+    Raises:
+        ParameterError: the file cannot be written.
+    """
+    write_whole(path, lambda beside: _draw(figure, beside, path.suffix.removeprefix("."), path.stem, dpi))
+    return path
+
+
+def svg_data(figure: Figure, name: str) -> str:
+    """A figure as a data URL, to stand in a page by itself; `name` makes it the same every time."""
+    drawn = io.BytesIO()
+    _draw(figure, drawn, "svg", name, DPI)
+    return f"data:image/svg+xml;base64,{base64.b64encode(drawn.getvalue()).decode()}"
+
+
+def _draw(figure: Figure, target: Path | io.BytesIO, form: str, salt: str, dpi: float) -> None:
+    no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
+    # The salt, in place of a random one, makes an SVG the same every time.
+    with rc_context({"svg.hashsalt": salt}):
+        figure.savefig(target, format=form, dpi=dpi, metadata=no_date)

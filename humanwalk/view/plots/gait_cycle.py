@@ -1,0 +1,99 @@
+"""Joint angles and powers of the legs over a gait cycle, from touchdown to touchdown, with people's beside them."""
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from humanwalk.body import SIDES, Side
+from humanwalk.measures.gait_measures import footfalls
+from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, Array, over_strides, people
+from humanwalk.run.folder import Run
+from humanwalk.view.plots.drawing import (
+    LABEL_SIZE,
+    PEOPLE,
+    PEOPLE_LINE,
+    SIDE,
+    TICK_SIZE,
+    curve,
+    label,
+    level,
+    new_figure,
+)
+
+
+def gait_cycle_angles(run: Run) -> Figure | None:
+    """Hip, knee and ankle over the gait cycle [deg]: the run's strides over people's; None if there was no stride.
+
+    Lines are means, bands one standard deviation to both sides.
+    """
+    return _over_people(run, "Hip, knee and ankle", ("hip", "knee", "ankle"))
+
+
+def gait_cycle_pelvis(run: Run) -> Figure | None:
+    """Tilt, obliquity and rotation of the pelvis over the gait cycle [deg], drawn as `gait_cycle_angles` are."""
+    return _over_people(run, "Pelvis", ("pelvis tilt", "pelvis obliquity", "pelvis rotation"))
+
+
+def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
+    figure = _three(f"{what} over the gait cycle; bands: mean ± 1 standard deviation")
+    for axes, name in zip(figure.axes, names, strict=True):
+        angle = ANGLES[name]
+        cycle, mean, sd = people(angle.people)
+        axes.fill_between(cycle, mean - sd, mean + sd, color=PEOPLE, linewidth=0, label="people, free speed")
+        curve(axes, cycle, mean, color=PEOPLE_LINE, linewidth=0.9, linestyle="--")
+        level(axes, 0.0)
+        for side in SIDES:
+            if not _mean_and_band(axes, run, side, angle.of(run.signals, side)):
+                return None
+        _finish(axes, f"{name} angle [deg]\n{angle.positive} positive", name)
+    _legend(figure)
+    return figure
+
+
+def joint_power(run: Run) -> Figure | None:
+    """Power of hip, knee and ankle per body mass over the gait cycle [W/kg]; None if there was no stride.
+
+    Power is torque times rate of the sagittal joint: positive where the actuator drives, negative where it brakes.
+    """
+    mass = run.scenario.subject.mass
+    figure = _three("Power of hip, knee and ankle over the gait cycle; bands: ± 1 standard deviation")
+    for axes, (name, motion) in zip(figure.axes, JOINTS.items(), strict=True):
+        level(axes, 0.0)
+        for side in SIDES:
+            torque, rate = (
+                run.signals[f"{side}{motion}.{what}"].to_numpy() for what in ("torque_N_m", "velocity_rad_s")
+            )
+            if not _mean_and_band(axes, run, side, torque * rate / mass):
+                return None
+        _finish(axes, f"{name} power [W/kg]\ndriving positive", name)
+    _legend(figure)
+    return figure
+
+
+def _three(title: str) -> Figure:
+    return new_figure(title, height=2.7, columns=3, sharex=True)
+
+
+def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
+    """Draw a signal over the strides of a leg in steady walking; False if there was none."""
+    strides = over_strides(run.signals, footfalls(run.signals, side, run.summary["steady_from_s"]), values)
+    if not len(strides):
+        return False
+    mean, sd = strides.mean(axis=0), strides.std(axis=0)
+    axes.fill_between(CYCLE, mean - sd, mean + sd, color=SIDE[side], alpha=0.2, linewidth=0)
+    text = f"{side.lower()}, {len(strides)} stride{'s' if len(strides) > 1 else ''}"
+    # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
+    curve(axes, CYCLE, mean, color=SIDE[side], label=text, linewidth=2.2 if side == "Right" else 0.9)
+    return True
+
+
+def _finish(axes: Axes, y_label: str, name: str) -> None:
+    axes.set_title(name, fontsize=LABEL_SIZE, pad=3)
+    axes.set_xticks([0, 50, 100])
+    label(axes, "gait cycle [%]", y_label)
+
+
+def _legend(figure: Figure) -> None:
+    handles, _ = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=TICK_SIZE)

@@ -1,0 +1,96 @@
+"""All joints at a glance: torques of the legs over one stride, and how well every joint follows its desired angle."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from humanwalk.body import SIDES, Side, human
+from humanwalk.measures.signals import TIME
+from humanwalk.measures.summary import joint_names, touchdowns
+from humanwalk.run.folder import Run
+from humanwalk.view.plots.drawing import (
+    LABEL_SIZE,
+    REFERENCE,
+    SIDE,
+    TICK_SIZE,
+    Array,
+    curve,
+    label,
+    legend,
+    level,
+    new_figure,
+)
+
+
+def joint_torques(run: Run) -> Figure | None:
+    """Torque of every leg joint over the last whole stride of each leg [N m]; None if there was no stride."""
+    strides = {side: touchdowns(run.signals, side)[-2:] for side in SIDES}
+    if any(stride.size < 2 for stride in strides.values()):
+        return None
+    motions = [name.removeprefix("Right") for name in joint_names(run.signals) if name.startswith("RightLeg")]
+    figure = new_figure(
+        "Torques of the leg joints over the last stride, from touchdown", height=4.6, rows=3, columns=3, sharex=True
+    )
+    # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
+    width: dict[Side, float] = {"Right": 2.2, "Left": 0.9}
+    for axes, motion in zip(figure.axes, motions, strict=True):
+        level(axes, 0.0)
+        for side in SIDES:
+            share, torque = _over_stride(run, f"{side}{motion}.torque_N_m", strides[side])
+            curve(axes, share, torque, color=SIDE[side], label=side.lower(), linewidth=width[side])
+        axes.set_title(human().joint(f"Right{motion}").motion, fontsize=LABEL_SIZE, pad=3)
+    for place, axes in enumerate(figure.axes):
+        label(axes, "stride [%]" if place >= 6 else "", "torque [N m]" if place % 3 == 0 else "")
+    figure.align_ylabels()
+    figure.legend(
+        handles=figure.axes[0].get_lines()[1:],
+        loc="upper right",
+        ncols=2,
+        frameon=False,
+        fontsize=TICK_SIZE,
+        borderpad=0.1,
+    )
+    return figure
+
+
+def tracking_error(run: Run) -> Figure | None:
+    """Rms difference of desired and actual angle of every joint in steady walking [deg]; None if it never came."""
+    errors = {name: np.degrees(error) for name, error in run.summary["tracking_error_rad"].items() if error is not None}
+    limbs = [name.removeprefix("Right") for name in errors if name.startswith("Right")]
+    trunk = [name for name in errors if not name.startswith(SIDES)]
+    if not (limbs or trunk):
+        return None
+    figure = new_figure(
+        "Tracking error in steady walking, rms of desired minus actual angle", height=3.6, columns=2, sharex=True
+    )
+    left, right = figure.axes
+    for side, shift in zip(SIDES, (-0.2, 0.2), strict=True):
+        _bars(left, [errors[f"{side}{name}"] for name in limbs], shift, 0.38, side)
+    _ticks(left, [human().joint(f"Right{name}").motion for name in limbs])
+    _bars(right, [errors[name] for name in trunk], 0.0, 0.6, None)
+    _ticks(right, [re.sub(r"(?<=\d)_(?=\d)", "–", name.removesuffix("_Motion")).replace("_", " ") for name in trunk])
+    legend(left)
+    return figure
+
+
+def _over_stride(run: Run, column: str, stride: Array) -> tuple[Array, Array]:
+    time = run.signals[TIME].to_numpy()
+    begin, end = stride
+    rows = (time >= begin) & (time <= end)
+    return 100.0 * (time[rows] - begin) / (end - begin), run.signals[column].to_numpy()[rows]
+
+
+def _bars(axes: Axes, errors: Sequence[float], shift: float, height: float, side: Side | None) -> None:
+    color, text = (REFERENCE, "spine and head") if side is None else (SIDE[side], side.lower())
+    axes.barh(np.arange(len(errors)) + shift, errors, height=height, color=color, label=text)
+
+
+def _ticks(axes: Axes, names: Sequence[str]) -> None:
+    axes.set_yticks(np.arange(len(names)), names)
+    axes.tick_params(axis="y", length=0, labelsize=TICK_SIZE)
+    axes.invert_yaxis()
+    axes.grid(False, axis="y")
+    label(axes, "rms error [deg]", "")

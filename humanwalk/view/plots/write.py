@@ -1,0 +1,70 @@
+"""Writes the plots of a run into its folder."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from humanwalk.files import make_folder
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run
+from humanwalk.view.plots.drawing import FORMATS, save
+from humanwalk.view.plots.gait_cycle import gait_cycle_angles, gait_cycle_pelvis, joint_power
+from humanwalk.view.plots.ground import centre_of_pressure, ground_reaction
+from humanwalk.view.plots.joints import joint_torques, tracking_error
+from humanwalk.view.plots.support import support_force, support_torque
+from humanwalk.view.plots.thesis_figures import THESIS_PLOTS
+
+PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
+    "support_force": support_force,
+    "support_torque": support_torque,
+    "gait_cycle_angles": gait_cycle_angles,
+    "gait_cycle_pelvis": gait_cycle_pelvis,
+    "joint_power": joint_power,
+    "ground_reaction": ground_reaction,
+    "centre_of_pressure": centre_of_pressure,
+    "joint_torques": joint_torques,
+    "tracking_error": tracking_error,
+}
+"""Every plot by name, which is also its file's; a function returns None where the run has nothing to draw."""
+
+
+def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png") -> list[Path]:
+    """Write plots of a run into `run.plots`, each file whole or not at all.
+
+    Args:
+        run: what is plotted.
+        only: names of plots, or how they begin: "figure_5" is all of chapter 5. None or none: every plot.
+        format: one of `drawing.FORMATS`.
+
+    Returns:
+        What was written; a plot for which the run has nothing to draw (no support, no stride yet) is left out.
+
+    Raises:
+        ParameterError: an unknown name or format, a run without physics, or a file that cannot be written.
+    """
+    if format not in FORMATS:
+        raise ParameterError(f"--format {format}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
+    names = select(only or ())
+    run.require_physics()
+    make_folder(run.plots)
+    written = []
+    for name in names:
+        figure = PLOTS[name](run)
+        if figure is not None:
+            written.append(save(figure, run.plots / f"{name}.{format}"))
+    return written
+
+
+def select(only: Sequence[str]) -> list[str]:
+    """Names of the plots that are, or begin with, one of `only`, in the order of `PLOTS`; all of them for none.
+
+    Raises:
+        ParameterError: one of `only` fits no plot.
+    """
+    for wanted in only:
+        if not wanted or not any(name.startswith(wanted) for name in PLOTS):
+            raise ParameterError(
+                f"--only {wanted}: no such plot; allowed: {', '.join(PLOTS)}; give a name or how it begins"
+            )
+    return [name for name in PLOTS if not only or name.startswith(tuple(only))]

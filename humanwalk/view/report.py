@@ -1,0 +1,185 @@
+"""A report of a run beside people: tables for a terminal, a page with figures for a browser, numbers for a program."""
+
+import html
+from collections.abc import Iterator, Sequence
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.table import Table
+
+from humanwalk.files import write_text
+from humanwalk.measures.human_likeness import ANGLES, FEWEST_STRIDES, Array, Comparison, Likeness, compare
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run
+from humanwalk.view.plots import PLOTS
+from humanwalk.view.plots.drawing import svg_data
+
+REPORT = "report.html"
+FIGURES = ("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")
+
+UP_AT_ITS_END = ("completed", "interrupted", "unfinished")
+
+CURVE_HEADER = ("angle [deg]", "correlation", "difference", "rms", "within 1 SD [%]")
+MEASURE_HEADER = ("measure", "run", "people", "source")
+
+DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2}
+"""Of a measure in a table, by its unit."""
+
+NOTES = (
+    "Run: mean ± standard deviation over the steps, strides or stances of both legs in steady walking.",
+    "Difference, rms: of the run's angle minus people's mean; within 1 SD: share of the cycle, for people 68 %.",
+    "Angles of people: Schwartz, Rozumalski, Trost (2008), children at the speed of their choice, whose curves have "
+    "the shape of adults' at the same dimensionless speed.",
+    "People's pelvis plane leans some 10 degrees forward in upright standing, this model's does not: the difference of "
+    "pelvis tilt, and as much of the hip's, is one of zeros.",
+    "Cost of transport is the integral of all joints' |torque x rate| per weight and distance, which is not people's "
+    "metabolic cost. No value for people is given where no source is known for the same measure.",
+)
+
+
+def compare_run(run: Run) -> Comparison:
+    """Compare a run with people.
+
+    Raises:
+        ParameterError: it did not stay up, has no physics, or has no straight walk of some strides.
+    """
+    run.require_physics()
+    end = run.summary["end"]
+    if end not in UP_AT_ITS_END:
+        raise ParameterError(
+            f"{run.path}: the run ended with '{end}' at {run.summary['duration_s']:.2f} s; allowed: one that was "
+            f"up to its end, for {FEWEST_STRIDES} strides of each leg; walk again, and end before with --duration"
+        )
+    try:
+        return compare(run.signals, run.scenario)
+    except ParameterError as error:
+        raise ParameterError(f"{run.path}: {error}") from None
+
+
+def to_json(comparison: Comparison) -> dict[str, Any]:
+    """Everything of a comparison, stride by stride, ready for JSON; null for what is no number."""
+    return {
+        "strides": {side.lower(): count for side, count in comparison.strides.items()},
+        "angles": {
+            name: {
+                side.lower(): {
+                    "correlation": _numbers(likeness.correlation),
+                    "difference_deg": _numbers(likeness.difference),
+                    "rms_deg": _numbers(likeness.rms),
+                    "within_1_sd": _numbers(likeness.inside),
+                }
+                for side, likeness in sides.items()
+            }
+            for name, sides in comparison.curves.items()
+        },
+        "measures": {
+            measure.name: {
+                "unit": measure.unit,
+                "values": _numbers(measure.values),
+                "people": None
+                if measure.people is None
+                else {"low": measure.people.low, "high": measure.people.high, "source": measure.people.source},
+            }
+            for measure in comparison.measures
+        },
+    }
+
+
+def terminal_tables(comparison: Comparison) -> list[Table]:
+    """The tables for a terminal: angles, then measures with their sources."""
+    angles = Table(*CURVE_HEADER, box=box.SIMPLE)
+    for row in curve_rows(comparison):
+        angles.add_row(*row)
+    caption = "\n".join((*(f"{number} {cited}" for number, cited in enumerate(sources(comparison), 1)), "", *NOTES))
+    measures = Table(*MEASURE_HEADER, box=box.SIMPLE, caption=caption, caption_justify="left")
+    for row in measure_rows(comparison):
+        measures.add_row(*row)
+    return [angles, measures]
+
+
+def write_report(run: Run, comparison: Comparison) -> Path:
+    """Write the page of a comparison, figures inside, into the run's folder, whole or not at all; returns its path.
+
+    Raises:
+        ParameterError: it cannot be written.
+    """
+    figures = ((name, PLOTS[name](run)) for name in FIGURES)
+    page = Template(files("humanwalk.view").joinpath("report_page.html").read_text(encoding="utf-8")).substitute(
+        title=html.escape(f"{run.path.resolve().name}: beside people"),
+        description=html.escape(run.scenario.description),
+        strides=html.escape(
+            ", ".join(f"{count} of the {side.lower()} leg" for side, count in comparison.strides.items())
+        ),
+        curves=_html_table(CURVE_HEADER, curve_rows(comparison)),
+        measures=_html_table(MEASURE_HEADER, measure_rows(comparison)),
+        figures="\n".join(
+            f'<img alt="{name}" src="{svg_data(figure, name)}">' for name, figure in figures if figure is not None
+        ),
+        sources=_html_items(sources(comparison)),
+        notes=_html_items(NOTES),
+    )
+    path = run.path / REPORT
+    write_text(path, page)
+    return path
+
+
+def curve_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
+    """Rows under CURVE_HEADER, both legs' strides together."""
+    for name, sides in comparison.curves.items():
+
+        def both(of: str, sides: Sequence[Likeness] = tuple(sides.values())) -> Array:
+            return np.concatenate([getattr(likeness, of) for likeness in sides])
+
+        yield (
+            f"{name}, {ANGLES[name].positive}",
+            _spread(both("correlation"), ".2f"),
+            _spread(both("difference"), ".1f"),
+            _spread(both("rms"), ".1f"),
+            _spread(100.0 * both("inside"), ".0f"),
+        )
+
+
+def measure_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
+    """Rows under MEASURE_HEADER; a source by its number among `sources`."""
+    cited = sources(comparison)
+    for measure in comparison.measures:
+        form, people = f".{DECIMALS[measure.unit]}f", measure.people
+        name = f"{measure.name} [{measure.unit}]" if measure.unit else measure.name
+        row = (name, _spread(measure.values, form))
+        if people is None:
+            yield *row, "", ""
+        else:
+            low, high = format(people.low, form), format(people.high, form)
+            yield *row, low if low == high else f"{low} to {high}", f"{cited.index(people.source) + 1}"
+
+
+def sources(comparison: Comparison) -> list[str]:
+    """Where people's values come from, each once, in the order of the measures."""
+    return list(dict.fromkeys(measure.people.source for measure in comparison.measures if measure.people))
+
+
+def _spread(values: Array, form: str) -> str:
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return "-"
+    mean = format(values.mean(), form)
+    return mean if values.size == 1 else f"{mean} ± {format(values.std(), form)}"
+
+
+def _numbers(values: Array) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+def _html_table(header: Sequence[str], rows: Iterator[tuple[str, ...]]) -> str:
+    def line(cells: Sequence[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    return "\n".join(("<table>", line(header, "th"), *(line(row, "td") for row in rows), "</table>"))
+
+
+def _html_items(items: Sequence[str]) -> str:
+    return "\n".join(f"<li>{html.escape(item)}</li>" for item in items)

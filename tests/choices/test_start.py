@@ -1,0 +1,98 @@
+"""The start: the angles that are asked for, noise within the ranges, and soles on the ground whatever they are."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.body import contact_spheres
+from humanwalk.choices.start import require_reachable, start_positions, start_velocities
+from humanwalk.choices.world import human_gains
+from humanwalk.gait.foot_cycle import minimum_offset
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import Scenario, StartParameters, load_scenario, shipped_scenarios
+
+
+def lowest_point(plant, skeleton, q) -> float:
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, q)
+    return min(
+        plant.GetBodyByName(sphere.body).EvalPoseInWorld(context).multiply(sphere.center)[2] - sphere.radius
+        for sphere in contact_spheres(skeleton)
+    )
+
+
+@settings(max_examples=40)
+@given(st.data())
+def test_lowest_point_of_the_soles_touches_the_ground(plant, skeleton, joints, data):
+    chosen = data.draw(st.lists(st.integers(0, 41), max_size=5, unique=True))
+    angles = {
+        joints.names[i]: data.draw(st.floats(max(joints.lower[i], -3.1), min(joints.upper[i], 3.1))) for i in chosen
+    }
+    q = start_positions(Scenario(start=StartParameters(joint_angles=angles)))
+    assert lowest_point(plant, skeleton, q) == pytest.approx(0.0, abs=1e-9)
+    for name, angle in angles.items():
+        assert q[joints.q[joints.names.index(name)]] == angle
+
+
+def test_start_faces_forward_above_the_origin():
+    q = start_positions(Scenario())
+    np.testing.assert_array_equal(q[:6], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+
+
+def test_noise_stays_within_the_ranges_and_has_the_size_that_is_asked_for(plant, skeleton, joints):
+    calm = start_positions(Scenario())[joints.q]
+    errors = []
+    for seed in range(20):
+        q = start_positions(Scenario(seed=seed, start=StartParameters(joint_noise=0.02)))
+        assert (q[joints.q] >= joints.lower).all()
+        assert (q[joints.q] <= joints.upper).all()
+        assert lowest_point(plant, skeleton, q) == pytest.approx(0.0, abs=1e-9)
+        errors.append(q[joints.q] - calm)
+    inside = (calm - joints.lower > 0.1) & (joints.upper - calm > 0.1)
+    assert inside.sum() > 20
+    assert np.std(np.array(errors)[:, inside]) == pytest.approx(0.02, rel=0.1)
+
+
+def test_the_body_starts_at_rest_unless_rates_are_noisy(joints):
+    assert not start_velocities(Scenario(seed=3)).any()
+    rates = np.array([start_velocities(Scenario(seed=s, start=StartParameters(rate_noise=0.1))) for s in range(20)])
+    assert not rates[:, :6].any()
+    assert np.std(rates[:, joints.v]) == pytest.approx(0.1, rel=0.1)
+
+
+def test_noise_of_rates_gains_and_angles_is_independent(joints):
+    noise = StartParameters(joint_noise=1e-3, rate_noise=1e-3, gain_noise=1e-3)
+    calm, noisy = Scenario(seed=5), Scenario(seed=5, start=noise)
+    errors = np.array(
+        [
+            (start_positions(noisy) - start_positions(calm))[joints.q],
+            start_velocities(noisy)[joints.v],
+            *(np.log(after / before) for before, after in zip(human_gains(calm), human_gains(noisy), strict=True)),
+        ]
+    )
+    inside = (np.abs(errors[0]) > 0.0) & np.isfinite(errors).all(axis=0)
+    assert inside.sum() > 25
+    assert np.abs(np.corrcoef(errors[:, inside]) - np.eye(4)).max() < 0.5
+    np.testing.assert_allclose(np.std(errors[:, inside], axis=1), 1e-3, rtol=0.35)
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_gaits_are_reachable(name):
+    require_reachable(load_scenario(name))
+
+
+@pytest.mark.parametrize("step_length", [0.4, 0.5, 0.6])
+def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length, skeleton):
+    least = minimum_offset(step_length, skeleton.leg_length)
+    overrides = {"gait.path.step_length": str(step_length), "gait.path.offset": str(least - 1e-4)}
+    with pytest.raises(ParameterError, match=rf"allowed: from {least:.4f} m on"):
+        require_reachable(load_scenario("thesis", overrides))
+
+
+def test_taller_body_reaches_with_an_offset_that_the_reference_needs_too():
+    # E32: a longer leg needs less of an offset for the same step.
+    overrides = {"gait.path.offset": "0.0355", "gait.path.step_height": "0.1", "gait.path.toe_drop": "0.2"}
+    with pytest.raises(ParameterError, match=r"gait\.path\.offset"):
+        require_reachable(load_scenario("thesis", overrides))
+    require_reachable(load_scenario("thesis", overrides | {"subject.stature": "1.95"}))

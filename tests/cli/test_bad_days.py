@@ -1,0 +1,370 @@
+"""What is left of a run when the machine, the disk, the person or the controller gives up; see docs/reliability.md."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from humanwalk.choices.reference import make_gait
+from humanwalk.cli.walk import _write_or_rescue
+from humanwalk.measures.signals import TIME
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, claimed, new_run_folder, require_room
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+from humanwalk.systems import inverse_kinematics_solver, whole_body_controller
+
+THREE = {SCENARIO, SIGNALS, SUMMARY}
+WALK = "from humanwalk.cli.main import main; main()"
+
+
+def start(folder, *more, before="", **environment):
+    """The command line in a process of its own, walking into `folder`/run."""
+    return subprocess.Popen(
+        [sys.executable, "-c", before + WALK, "walk", "--no-replay", "--no-plots", "-o", "run", *more],
+        cwd=folder,
+        env=os.environ | environment,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+    )
+
+
+def wait_for(path, process, limit=120.0):
+    end = time.monotonic() + limit
+    while not path.exists():
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def names(folder):
+    """Files that are seen; one that is being written is hidden."""
+    return {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
+
+
+# Killed, stopped, twice.
+
+
+def test_killed_run_leaves_its_last_checkpoint(tmp_path):
+    process = start(tmp_path, "--duration", "600", "--checkpoint", "0.5")
+    try:
+        wait_for(tmp_path / "run" / SUMMARY, process)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == -signal.SIGKILL
+    run = Run.open(tmp_path / "run")
+    assert run.summary["end"] == "unfinished"
+    assert run.scenario.duration == 600
+    assert run.signals.num_rows > 1
+    assert all(np.isfinite(run[name]).all() for name in run.signals.column_names)
+    # What it left is not overwritten.
+    with pytest.raises(ParameterError, match="holds files already"):
+        new_run_folder(tmp_path / "run", "thesis")
+
+
+def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path):
+    process = start(tmp_path, "--duration", "600")
+    try:
+        wait_for(tmp_path / "run", process)
+    finally:
+        process.kill()
+        process.communicate()
+    assert names(tmp_path / "run") == set()
+    with pytest.raises(ParameterError, match="no run"):
+        Run.open(tmp_path / "run")
+    # The claim went with the process.
+    folder, _ = new_run_folder(tmp_path / "run", "thesis")
+    with claimed(folder):
+        pass
+
+
+def test_ctrl_c_keeps_everything_until_then(tmp_path):
+    process = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
+    try:
+        wait_for(tmp_path / "run" / SUMMARY, process)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    run = Run.open(tmp_path / "run")
+    assert run.summary["end"] == "interrupted"
+    assert names(run.path) == THREE
+
+
+def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
+    """As with `humanwalk walk 2>&1 | head -1`."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WALK, "walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stderr.readline() == b"thesis: walking 0.1 s\n"
+    process.stderr.close()
+    assert process.wait(timeout=60) == 0
+    assert Run.open(tmp_path / "run").summary["end"] == "completed"
+
+
+def test_two_runs_do_not_write_into_one_folder(tmp_path):
+    first = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
+    try:
+        wait_for(tmp_path / "run", first)
+        with pytest.raises(ParameterError, match=r"another run writes into it|holds files already"):
+            folder, _ = new_run_folder(tmp_path / "run", "thesis")
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline:
+                with claimed(folder):
+                    time.sleep(0.01)
+    finally:
+        first.kill()
+        first.communicate()
+
+
+def test_claim_is_exclusive_and_ends(tmp_path):
+    with claimed(tmp_path), pytest.raises(ParameterError, match="another run writes into it"), claimed(tmp_path):
+        pass
+    with claimed(tmp_path):
+        pass
+
+
+def test_folder_that_was_filled_before_the_claim_is_refused(tmp_path):
+    (tmp_path / "mine").write_text("x")
+    with pytest.raises(ParameterError, match="another run writes into it"), claimed(tmp_path):
+        pass
+
+
+# Disks.
+
+
+def test_full_disk_is_found_before_the_simulation(tmp_path, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda path: type("Usage", (), {"free": 10_000_000})())
+    with pytest.raises(ParameterError, match="10 MB are free"):
+        require_room(tmp_path, load_scenario("thesis"))
+
+
+def test_more_simulated_time_needs_more_room(tmp_path, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda path: type("Usage", (), {"free": 100_000_000})())
+    require_room(tmp_path, load_scenario("thesis"))
+    with pytest.raises(ParameterError, match="make room"):
+        require_room(tmp_path, load_scenario("thesis", {"duration": "3600"}))
+
+
+LIMIT = (
+    "import resource, signal, sys;"
+    "signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+    "resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0}));"
+)
+
+
+@pytest.mark.parametrize(("limit", "left"), [(60_000, {SCENARIO}), (100, None)])
+def test_disk_that_fills_up_at_the_end_is_one_line_and_no_half_file(tmp_path, limit, left):
+    """A file-size limit stands for the full disk; the folder for temporary files is as full."""
+    process = start(tmp_path, "--duration", "0.3", before=LIMIT.format(limit), TMPDIR=str(tmp_path))
+    _, errors = process.communicate(timeout=120)
+    assert process.returncode == 2, errors
+    *before, line = filter(None, errors.splitlines())
+    assert before in ([], ["thesis: walking 0.3 s"])
+    assert line.startswith("humanwalk: ")
+    assert "File too large" in line or "room" in line
+    if left is None:
+        assert not (tmp_path / "run").exists()
+    else:
+        assert {entry.name for entry in (tmp_path / "run").iterdir()} == left
+    assert not [entry for entry in tmp_path.iterdir() if entry.name.startswith("humanwalk-")]
+
+
+def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path, monkeypatch):
+    outcome = simulate(load_scenario("thesis", {"duration": "0.02"}))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(ParameterError, match="the run is saved in") as raised:
+        _write_or_rescue(tmp_path / "gone", outcome, "thesis")
+    (rescue,) = tmp_path.iterdir()
+    assert str(rescue) in str(raised.value)
+    assert Run.open(rescue).signals.equals(outcome.signals)
+
+
+def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_path):
+    """Of root, who may write anywhere else, the kernel's own folder is tried."""
+    folder = tmp_path / "mine"
+    folder.mkdir(mode=0o555)
+    if os.geteuid() == 0:
+        folder = "/proc/humanwalk"
+    with pytest.raises(ParameterError) as raised:
+        new_run_folder(type(tmp_path)(folder) / "run", "thesis")
+    assert len(str(raised.value).splitlines()) == 1
+    assert "that you may write to" in str(raised.value)
+
+
+# Controllers and solvers.
+
+
+def broken_from(monkeypatch, begin, breaks):
+    """Let the inverse kinematics break from a time [s] on."""
+    solve = inverse_kinematics_solver.InverseKinematicsSolver._solve_from
+
+    def broken(self, warm, context, discrete):
+        status = solve(self, warm, context, discrete)
+        return breaks(self, context, discrete) if context.get_time() >= begin - 1e-9 else status
+
+    monkeypatch.setattr(inverse_kinematics_solver.InverseKinematicsSolver, "_solve_from", broken)
+
+
+def not_a_number(self, context, discrete):
+    group = self._groups[0]
+    discrete.set_value(group, np.full(discrete.value(group).size, np.nan))
+
+
+def throw(self, context, discrete):
+    raise RuntimeError("the solver gave up\nsecond line")
+
+
+def ended(monkeypatch, tmp_path, begin, breaks, law="implicit"):
+    broken_from(monkeypatch, begin, breaks)
+    period = {"simulation.control_period": "0.005"}
+    outcome = simulate(load_scenario("thesis", {"duration": str(begin + 0.1), "actuators.law": law} | period))
+    run = outcome.save(tmp_path / "run")
+    return outcome, Run.open(run.path)
+
+
+@pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
+def test_nan_in_the_controller_ends_the_run_and_keeps_what_was_before(monkeypatch, tmp_path, law):
+    outcome, run = ended(monkeypatch, tmp_path, 0.05, not_a_number, law)
+    assert outcome.end == "not a number" or outcome.end.startswith("solver failed")
+    assert len(outcome.end.splitlines()) == 1
+    before = run.time < 0.05 - 1e-9
+    assert before.sum() >= 9
+    for name in run.signals.column_names:
+        assert np.isfinite(run[name][before]).all(), name
+    assert run.summary["survived"] is False
+
+
+@pytest.mark.parametrize("phase", ["standing", "first landing", "left swing", "right swing"])
+def test_solver_that_fails_in_a_phase_of_the_gait_leaves_its_record(monkeypatch, tmp_path, phase):
+    gait = make_gait(load_scenario("thesis"))
+    first = gait.start_time
+    stride = 0.5 / 0.6 / 1.4
+    begin = {
+        "standing": 0.05,
+        "first landing": first,
+        "left swing": first + 0.25 * stride,
+        "right swing": first + 0.75 * stride,
+    }[phase]
+    begin = 0.005 * round(begin / 0.005)
+    outcome, run = ended(monkeypatch, tmp_path, begin, throw)
+    assert outcome.end == "solver failed: the solver gave up"
+    assert run.summary["end"] == outcome.end
+    assert run.signals.num_rows == pytest.approx(begin / 0.005, abs=2)
+    assert run.signals[TIME].to_numpy()[-1] <= begin
+
+
+def test_solver_that_fails_at_the_start_is_refused_and_leaves_nothing(monkeypatch):
+    broken_from(monkeypatch, 0.0, throw)
+    with pytest.raises(ParameterError, match="it ended at its start: solver failed: the solver gave up"):
+        simulate(load_scenario("thesis", {"duration": "0.1"}))
+
+
+def test_error_of_another_kind_is_no_reason_to_lose_the_record(monkeypatch, tmp_path):
+    def singular(self, context, discrete):
+        np.linalg.inv(np.zeros((2, 2)))
+
+    outcome, run = ended(monkeypatch, tmp_path, 0.02, singular)
+    assert outcome.end == "solver failed: Singular matrix"
+    assert run.signals.num_rows > 1
+
+
+def test_checkpoints_grow_and_are_runs(tmp_path):
+    seen = []
+    outcome = simulate(load_scenario("thesis", {"duration": "0.06"}), on_checkpoint=seen.append, checkpoint_period=0.0)
+    rows = [checkpoint.signals.num_rows for checkpoint in seen]
+    assert rows == sorted(rows)
+    assert rows[-1] > rows[0]
+    assert {checkpoint.end for checkpoint in seen} == {"unfinished"}
+    last = seen[-1].signals
+    assert outcome.signals.slice(0, last.num_rows).equals(last)
+    assert pq.read_metadata(seen[-1].save(tmp_path / "run").path / SIGNALS).num_rows == last.num_rows
+
+
+# Servers.
+
+
+def listening(pid):
+    """Local addresses of the sockets on which a process listens, as the kernel writes them: hexadecimal."""
+    sockets = set()
+    for entry in os.listdir(f"/proc/{pid}/fd"):
+        try:
+            sockets.add(os.readlink(f"/proc/{pid}/fd/{entry}"))
+        except OSError:
+            continue
+    addresses = []
+    for table in ("tcp", "tcp6", "udp", "udp6"):
+        with open(f"/proc/{pid}/net/{table}") as file:
+            for line in list(file)[1:]:
+                cells = line.split()
+                if f"socket:[{cells[9]}]" in sockets and (table.startswith("udp") or cells[3] == "0A"):
+                    addresses.append(cells[1].partition(":")[0])
+    return addresses
+
+
+LOOPBACK = {"0100007F", "00000000000000000000000001000000"}
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/net/tcp"), reason="needs Linux' list of sockets")
+def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
+    code = (
+        "import threading; from humanwalk.view.replay import make_meshcat, replay_server;"
+        "m = make_meshcat(); s = replay_server(b''); threading.Thread(target=s.serve_forever, daemon=True).start();"
+        "print('ready', flush=True); input()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
+    try:
+        assert process.stdout.readline() == b"ready\n"
+        addresses = listening(process.pid)
+    finally:
+        process.kill()
+        process.communicate()
+    assert len(addresses) >= 2
+    assert set(addresses) <= LOOPBACK
+
+
+# The same for the walker on its own feet, whose program may fail.
+
+
+@pytest.mark.parametrize(
+    ("phase", "begin", "breaks"),
+    [(0, 0.1, throw), (1, 0.8, throw), (3, 1.4, throw), (2, 1.66, throw), (3, 1.4, not_a_number)],
+    ids=["standing", "weight shift", "single support", "double support", "not a number"],
+)
+def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
+    monkeypatch, tmp_path, phase, begin, breaks
+):
+    solve = whole_body_controller.WholeBodyController._solve
+
+    def broken(self, context, discrete):
+        status = solve(self, context, discrete)
+        if context.get_time() >= begin - 1e-9:
+            breaks(self, context, discrete)
+        return status
+
+    monkeypatch.setattr(whole_body_controller.WholeBodyController, "_solve", broken)
+    points = "[{time: 0.1, forward: 0.5}]"
+    outcome = simulate(load_scenario("walk", {"duration": str(begin + 0.1), "balanced.command.points": points}))
+    run = Run.open(outcome.save(tmp_path / "run").path)
+    assert outcome.end == "not a number" or outcome.end.startswith("solver failed: ")
+    assert run.summary["end"] == outcome.end
+    assert run.summary["survived"] is False
+    before = run.time < begin - 1e-9
+    assert run["planner.phase"][before][-1] == phase
+    assert run.time[before][-1] == pytest.approx(begin, abs=0.011)
+    for name in run.signals.column_names:
+        assert np.isfinite(run[name][before]).all(), name

@@ -1,0 +1,381 @@
+"""The command line as a person meets it: what it writes, what it prints, and how it says no."""
+
+import json
+import logging
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import pytest
+
+from humanwalk.bench import measure, read_result
+from humanwalk.cli.main import app, main
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run
+from humanwalk.scenario import load_scenario, shipped_scenarios
+
+COMMANDS = {name.name or name.callback.__name__ for name in app.registered_commands}
+
+
+@pytest.fixture
+def humanwalk(monkeypatch, capfd, tmp_path):
+    """Runs the command line in an empty folder; gives exit code, output and errors."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    level = logging.getLogger("drake").level
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["humanwalk", *map(str, arguments)])
+        code = 0
+        try:
+            main()
+        except SystemExit as end:
+            code = end.code or 0
+        captured = capfd.readouterr()
+        return code, captured.out, captured.err
+
+    yield run
+    logging.getLogger("drake").setLevel(level)
+
+
+@pytest.fixture
+def refusal(humanwalk, tmp_path):
+    """Runs a command that is refused; gives the one line."""
+
+    def run(*arguments):
+        before = sorted(tmp_path.rglob("*"))
+        code, out, err = humanwalk(*arguments)
+        assert code == 2
+        assert out == ""
+        (line,) = err.splitlines()
+        assert line.startswith("humanwalk: ")
+        assert sorted(tmp_path.rglob("*")) == before
+        return line
+
+    return run
+
+
+# Help and lists.
+
+
+def test_help_lists_every_command(humanwalk):
+    code, out, _ = humanwalk("--help")
+    assert code == 0
+    assert {"walk", "replay", "scenarios", "model", "diagram"} <= COMMANDS
+    assert [name for name in COMMANDS if name not in out] == []
+
+
+@pytest.mark.parametrize("command", sorted(COMMANDS - {"scenarios"}))
+def test_help_of_every_command_has_an_example(humanwalk, command):
+    code, out, _ = humanwalk(command, "--help")
+    assert code == 0
+    assert f"humanwalk {command}" in out
+    assert "Example" in out
+
+
+def test_scenarios_are_listed_with_what_they_are(humanwalk):
+    code, out, _ = humanwalk("scenarios")
+    assert code == 0
+    for name in shipped_scenarios():
+        (line,) = (line for line in out.splitlines() if line.startswith(f"│ {name} "))
+        assert f"{load_scenario(name).commanded_speed:g}" in line
+
+
+def test_installed_command_answers():
+    executable = shutil.which("humanwalk", path=os.path.dirname(sys.executable))
+    assert executable
+    done = subprocess.run([executable, "walk", "thesiss"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+
+
+# walk.
+
+
+def test_walk_writes_the_files_it_promises(humanwalk, tmp_path):
+    code, out, err = humanwalk("walk", "--duration", "0.2", "--no-plots", "--no-replay", "-o", "walked")
+    assert code == 0
+    assert out == ""
+    assert {path.name for path in (tmp_path / "walked").iterdir()} == {
+        "scenario.yaml",
+        "signals.parquet",
+        "summary.json",
+    }
+    assert "EXTERNAL SUPPORT" in err
+    assert "walked" in err
+    run = Run.open(tmp_path / "walked")
+    assert run.scenario == load_scenario("thesis", {"duration": "0.2"})
+    assert run.signals.num_rows == 41
+    assert {
+        "scenario",
+        "survived",
+        "duration_s",
+        "fall_time_s",
+        "mean_speed_m_s",
+        "lateral_drift_m",
+        "foot_lift_m",
+        "steps",
+        "support_force_rms_N",
+        "external_support",
+        "peak_torque_N_m",
+        "tracking_error_rad",
+        "cost_of_transport",
+        "realtime_factor",
+        "versions",
+        "seed",
+    } <= run.summary.keys()
+
+
+def test_run_is_walked_again_from_its_own_scenario(humanwalk, tmp_path):
+    quick = ("--no-plots", "--no-replay")
+    humanwalk("walk", "--duration", "0.1", "--set", "start.joint_noise=0.01", "-o", "first", *quick)
+    code, _, _ = humanwalk("walk", "first/scenario.yaml", "-o", "again", *quick)
+    assert code == 0
+    first, again = Run.open(tmp_path / "first"), Run.open(tmp_path / "again")
+    for name in first.signals.column_names:
+        assert first.signals[name].equals(again.signals[name]), name
+    assert again.summary["scenario"] == "scenario"
+
+
+def test_walks_without_an_output_go_to_numbered_folders(humanwalk, tmp_path):
+    for _ in range(2):
+        assert humanwalk("walk", "--duration", "0.01", "--no-plots", "--no-replay")[0] == 0
+    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["thesis", "thesis-2"]
+
+
+def test_settings_reach_the_run(humanwalk, tmp_path):
+    humanwalk(
+        *("walk", "--duration", "0.01", "--no-plots", "--no-replay", "-o", "walked"),
+        *("--set", "gait.path.step_height=0.12", "--set", "contact=hydroelastic"),
+    )
+    scenario = Run.open(tmp_path / "walked").scenario
+    assert (scenario.gait.path.step_height, scenario.contact) == (0.12, "hydroelastic")
+
+
+def test_fall_has_an_exit_code_and_a_run(humanwalk, tmp_path):
+    code, _, err = humanwalk(
+        *("walk", "--duration", "4", "--no-plots", "--no-replay", "-o", "fallen"),
+        *("--set", "balance.support.enabled=false"),
+    )
+    assert code == 1
+    assert "fell" in err
+    summary = json.loads((tmp_path / "fallen" / "summary.json").read_text())
+    assert summary["survived"] is False
+    assert summary["fall_time_s"] == summary["duration_s"]
+
+
+def test_interrupted_walk_keeps_its_run(tmp_path):
+    executable = shutil.which("humanwalk", path=os.path.dirname(sys.executable))
+    command = [executable, "walk", "--duration", "3600", "--no-plots", "--no-replay", "-o", "walked"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stderr.readline() == "thesis: walking 3600 s\n"
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert "interrupted" in err
+    assert Run.open(tmp_path / "walked").summary["end"] == "interrupted"
+
+
+# Bad input: one line, exit code 2, nothing left behind.
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("thesiss",), "thesis"),
+        (("none.yaml",), "No such file"),
+        (("--set", "gait.path.step_hight=0.1"), "did you mean step_height?"),
+        (("--set", "gait.path.step_length=50"), "write 0.5 (m)"),
+        (("--set", "subject.mass=-3"), "allowed: 30 to 200 kg"),
+        (("--set", "gait.path.step_height"), "FIELD=VALUE"),
+        (("--set", "=3"), "FIELD=VALUE"),
+        (("--set", "duration=[1"), "not YAML"),
+        (("--duration", "-1"), "duration"),
+        (("--duration", "nan"), "finite"),
+        (("--set", "gait.path.offset=0.03"), "shorten the step"),
+        (("--set", "gait.path.toe_drop=0"), "Ankle"),
+        (("--set", "actuators.law=explicit"), "implicit"),
+        (("--set", "start.joint_angles.RightLegTibiaMotion=-0.3"), "RightLegTibiaMotion"),
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("output", [(), ("-o", "new/folder")], ids=["default", "output"])
+def test_walk_that_cannot_be_is_refused_and_leaves_nothing(refusal, arguments, said, output):
+    assert said in refusal("walk", *arguments, *output, "--no-replay", "--no-plots")
+
+
+def test_output_that_holds_files_is_refused_and_left_alone(refusal, tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.txt").write_text("years of work")
+    assert "holds files already" in refusal("walk", "-o", "mine", "--no-replay")
+    assert (tmp_path / "mine" / "thesis.txt").read_text() == "years of work"
+
+
+def test_empty_folder_that_was_there_stays_when_the_walk_is_refused(refusal, tmp_path):
+    (tmp_path / "mine").mkdir()
+    refusal("walk", "-o", "mine", "--no-replay", "--set", "gait.path.offset=0.03")
+
+
+@pytest.mark.parametrize("output", ["file", "file/run", "/proc/humanwalk"])
+def test_output_that_cannot_be_written_is_refused(refusal, tmp_path, output):
+    (tmp_path / "file").write_text("x")
+    if output.startswith("/proc") and not os.path.isdir("/proc"):
+        pytest.skip("no /proc on this system")
+    assert output in refusal("walk", "-o", output, "--no-replay", "--duration", "0.01")
+
+
+def test_scenario_file_that_is_no_yaml_is_refused(refusal, tmp_path):
+    (tmp_path / "mine.yaml").write_text("duration: 1\ngait: [1\n")
+    assert "mine.yaml: not YAML at line" in refusal("walk", "mine.yaml")
+
+
+@pytest.mark.parametrize("command", ["replay", "plot"])
+def test_folder_that_holds_no_run_is_refused(refusal, command):
+    assert "no run" in refusal(command, "none")
+
+
+# bench.
+
+
+@pytest.mark.slow
+def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_path):
+    code, out, err = humanwalk("bench", "stand", "--duration", "0.02", "--repeats", "1", "-o", "new.json")
+    assert code == 0
+    assert "stand" in out
+    assert "WholeBodyController" in out
+    assert "new.json" in err
+    code, out, _ = humanwalk("bench", "--compare", "new.json", "new.json")
+    assert code == 0
+    assert "1.00" in out
+
+
+@pytest.fixture
+def measured_until(monkeypatch):
+    """Repeats of a benchmark that cost one second each, and an error instead of the one with that place."""
+
+    def set_(place, error):
+        repeats = iter(range(100))
+
+        def repeat(scenario, overrides):
+            if next(repeats) == place:
+                raise error
+            turns = {name: [(1.0, 1.0)] for name in ("full", "unrecorded", "bare")}
+            return {"startup_s": 1.0, "peak_memory_MB": 1.0, "profile": {}, "turns": turns}
+
+        monkeypatch.setattr(measure, "_repeat", repeat)
+
+    return set_
+
+
+def test_interrupted_bench_keeps_what_there_is(humanwalk, measured_until, tmp_path):
+    measured_until(3, KeyboardInterrupt())
+    code, out, err = humanwalk("bench", "stand", "walk", "--repeats", "2", "-o", "new.json")
+    assert code == 130
+    assert "not complete: 3 of 4 repeats" in out
+    assert "interrupted; kept 3 of 4 repeats" in err
+    assert read_result(tmp_path / "new.json").done == {"stand": 2, "walk": 1}
+    code, out, _ = humanwalk("bench", "--compare", "new.json", "new.json")
+    assert code == 0
+    assert "old has 3 of 4 repeats" in out
+
+
+def test_bench_interrupted_at_once_says_that_there_is_nothing(humanwalk, measured_until, tmp_path):
+    measured_until(0, KeyboardInterrupt())
+    code, _, err = humanwalk("bench", "stand", "-o", "new.json")
+    assert code == 130
+    assert "nothing was measured" in err
+    assert not (tmp_path / "new.json").exists()
+
+
+def test_bench_that_fails_keeps_what_was_measured_before(humanwalk, measured_until, tmp_path):
+    measured_until(1, ParameterError("walk: fell; allowed: none"))
+    code, _, err = humanwalk("bench", "stand", "walk", "-o", "new.json")
+    assert code not in (0, 130)
+    assert "walk: fell" in err
+    assert list(read_result(tmp_path / "new.json").scenarios) == ["stand"]
+
+
+def test_bench_into_no_folder_is_refused_before_it_measures(refusal):
+    assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
+
+
+def test_bench_compares_only_what_it_wrote(refusal, tmp_path):
+    (tmp_path / "other.json").write_text("{}")
+    assert "other.json: is no result" in refusal("bench", "--compare", "other.json", "other.json")
+
+
+# model and diagram.
+
+
+def test_model_is_written_for_a_subject(humanwalk, tmp_path):
+    from pydrake.multibody.parsing import Parser
+    from pydrake.multibody.plant import MultibodyPlant
+
+    assert humanwalk("model", "--mass", "55", "--stature", "1.6", "-o", "small.sdf")[0] == 0
+    plant = MultibodyPlant(time_step=0.0)
+    Parser(plant).AddModels(str(tmp_path / "small.sdf"))
+    plant.Finalize()
+    assert plant.CalcTotalMass(plant.CreateDefaultContext()) == pytest.approx(55.0, rel=1e-6)
+    assert plant.num_actuators() == 42
+
+
+def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
+    assert humanwalk("model", "-o", "human.xml")[0] == 0
+    assert ElementTree.parse(tmp_path / "human.xml").getroot().tag == "mujoco"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--mass", "-3"), "mass: -3"),
+        (("--stature", "175"), "centimetres"),
+        (("--mass", "nan"), "finite"),
+    ],
+    ids=str,
+)
+def test_model_of_nobody_is_refused(refusal, arguments, said):
+    assert said in refusal("model", *arguments, "-o", "x.sdf")
+
+
+def test_model_in_no_folder_is_refused(refusal):
+    assert "No such file or directory" in refusal("model", "-o", "none/x.sdf")
+
+
+needs_dot = pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz' dot is not installed")
+# pydot calls pyparsing by names of old.
+old_pydot = pytest.mark.filterwarnings("ignore:.*deprecated - use:DeprecationWarning")
+
+
+@needs_dot
+@old_pydot
+@pytest.mark.parametrize(("name", "start"), [("d.svg", b"<?xml"), ("d.png", b"\x89PNG"), ("d.PDF", b"%PDF")])
+def test_diagram_is_drawn(humanwalk, tmp_path, name, start):
+    assert humanwalk("diagram", "-o", name)[0] == 0
+    assert (tmp_path / name).read_bytes().startswith(start)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+@needs_dot
+@old_pydot
+def test_diagram_shows_the_systems_of_its_scenario(humanwalk, tmp_path):
+    humanwalk("diagram", "-o", "d.svg", "--set", "balance.upper_body.enabled=true")
+    drawn = (tmp_path / "d.svg").read_text()
+    for name in ("gait", "inverse_kinematics", "actuators", "plant", "support", "upper_body_balance"):
+        assert name in drawn
+    assert "foot_force_balance" not in drawn
+
+
+@pytest.mark.parametrize("name", ["d.jpg", "d", "d.svg.gz"])
+def test_diagram_of_an_unknown_format_is_refused(refusal, name):
+    assert "svg, png, pdf" in refusal("diagram", "-o", name)
+
+
+def test_diagram_of_an_unknown_scenario_is_refused(refusal):
+    assert "thesiss" in refusal("diagram", "thesiss", "-o", "d.svg")

@@ -1,0 +1,229 @@
+"""What is exported, read back by readers of this test's own, has the numbers, units and axes of the run."""
+
+import csv
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+from scipy.spatial.transform import Rotation
+from typer.testing import CliRunner
+
+from humanwalk.body import SIDES, human
+from humanwalk.body.markers import markers
+from humanwalk.body.opensim_names import COORDINATES, R_OW, SPINE_COORDINATES
+from humanwalk.cli.main import app
+from humanwalk.exchange import FORMATS, export_run
+from humanwalk.exchange.motion import ground_force, marker_paths
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.measures.summary import joint_names
+from humanwalk.quantity import ParameterError
+
+
+def read_storage(path):
+    """Header flags, and columns by name."""
+    head, _, body = path.read_text().partition("endheader\n")
+    flags = dict(line.split("=") for line in head.splitlines() if "=" in line)
+    names, *rows = (line.split("\t") for line in body.splitlines())
+    data = np.array(rows, dtype=float)
+    assert flags["version"] == "1"
+    assert (int(flags["nRows"]), int(flags["nColumns"])) == data.shape
+    assert names[0] == "time"
+    return flags, dict(zip(names, data.T, strict=True))
+
+
+def read_trc(path):
+    """Marker paths in millimetres by name, the frames' times, and the header."""
+    lines = path.read_text().split("\n")
+    head = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=True))
+    names = lines[3].split("\t")[2::3]
+    assert lines[4].split("\t")[2:] == [f"{axis}{i + 1}" for i in range(len(names)) for axis in "XYZ"]
+    data = np.array([line.split("\t") for line in lines[6:] if line], dtype=float)
+    assert data.shape == (int(head["NumFrames"]), 2 + 3 * len(names))
+    assert len(names) == int(head["NumMarkers"])
+    np.testing.assert_array_equal(data[:, 0], 1 + np.arange(data.shape[0]))
+    return {name: data[:, 2 + 3 * i : 5 + 3 * i] for i, name in enumerate(names)}, data[:, 1], head
+
+
+@pytest.fixture(scope="module")
+def opensim_folder(run):
+    export_run(run, "opensim")
+    return run.path / "opensim"
+
+
+def test_files_are_those_of_the_format(run, opensim_folder):
+    assert {path.name for path in opensim_folder.iterdir()} == {
+        "angles.mot",
+        "torques.sto",
+        "ground_forces.mot",
+        "external_loads.xml",
+        "markers.trc",
+    }
+
+
+def test_angles_are_degrees_with_opensims_names_and_signs(opensim_folder, signals):
+    flags, columns = read_storage(opensim_folder / "angles.mot")
+    assert flags["inDegrees"] == "yes"
+    np.testing.assert_allclose(columns["time"], signals[TIME].to_numpy(), atol=1e-12)
+    for joint in joint_names(signals):
+        coordinate, factor = COORDINATES.get(joint, (joint, 1.0))
+        expected = factor * np.rad2deg(signals[f"{joint}.angle_rad"].to_numpy())
+        np.testing.assert_allclose(columns[coordinate], expected, rtol=1e-10)
+
+
+def test_signs_of_the_coordinates_are_those_of_the_motions():
+    motions = {joint.name: joint.motion for joint in human().joints}
+    for joint, (coordinate, factor) in COORDINATES.items():
+        opposite = {"hip_adduction": "hip abduction", "arm_add": "shoulder abduction"}
+        name = coordinate[:-2]
+        assert factor == (-1.0 if name in opposite else 1.0)
+        if name in opposite:
+            assert motions[joint] == opposite[name]
+
+
+def test_back_is_the_sum_of_its_joints(opensim_folder, signals):
+    _, columns = read_storage(opensim_folder / "angles.mot")
+    spine = [joint for joints, _ in SPINE_COORDINATES.values() for joint in joints]
+    assert len(spine) == len(set(spine)) == 10
+    for coordinate, (joints, factor) in SPINE_COORDINATES.items():
+        total = sum(signals[f"{joint}.angle_rad"].to_numpy() for joint in joints)
+        np.testing.assert_allclose(columns[coordinate], factor * np.rad2deg(total), rtol=1e-10)
+
+
+def test_pelvis_turns_as_opensims_coordinates_do(opensim_folder, signals):
+    _, columns = read_storage(opensim_folder / "angles.mot")
+    turns = np.deg2rad([columns[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")]).T
+    R_OP = Rotation.from_euler("ZXY", turns).as_matrix()
+    quaternion = matrix(signals, [f"pelvis.quaternion_{axis}" for axis in "wxyz"])
+    R_WP = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()
+    # A vector forward, one up: the same in both worlds.
+    for v_P in np.eye(3):
+        np.testing.assert_allclose(R_OP @ (R_OW @ v_P), (R_WP @ v_P) @ R_OW.T, atol=1e-9)
+    # Turning to the left is positive about an axis that points up.
+    assert columns["pelvis_rotation"][-1] == pytest.approx(np.rad2deg(2 * 0.4), abs=2)
+
+
+def test_opensims_world_is_x_forward_y_up_z_right():
+    forward, left, up = np.eye(3)
+    np.testing.assert_array_equal(R_OW @ forward, [1, 0, 0])
+    np.testing.assert_array_equal(R_OW @ up, [0, 1, 0])
+    np.testing.assert_array_equal(R_OW @ -left, [0, 0, 1])
+    assert np.linalg.det(R_OW) == pytest.approx(1.0)
+
+
+def test_torques_are_newton_metres_of_every_joint(opensim_folder, signals):
+    flags, columns = read_storage(opensim_folder / "torques.sto")
+    assert flags["inDegrees"] == "no"
+    assert len(columns) == 1 + 42
+    for joint in joint_names(signals):
+        coordinate, factor = COORDINATES.get(joint, (joint, 1.0))
+        expected = factor * signals[f"{joint}.torque_N_m"].to_numpy()
+        np.testing.assert_allclose(columns[f"{coordinate}_moment"], expected, rtol=1e-10)
+
+
+def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
+    """Angle and torque change their sign together."""
+    _, angles = read_storage(opensim_folder / "angles.mot")
+    _, torques = read_storage(opensim_folder / "torques.sto")
+    for joint, (coordinate, _) in COORDINATES.items():
+        product = signals[f"{joint}.torque_N_m"].to_numpy() * np.rad2deg(signals[f"{joint}.angle_rad"].to_numpy())
+        np.testing.assert_allclose(torques[f"{coordinate}_moment"] * angles[coordinate], product, rtol=1e-9)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_ground_force_is_finite_always_and_nothing_when_unloaded(run, side):
+    load = ground_force(run, side)
+    loaded = run.signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
+    assert np.isfinite(np.column_stack((load.force, load.point, load.free_moment))).all()
+    assert not load.force[~loaded].any()
+    assert not load.free_moment[~loaded].any()
+
+
+def test_point_of_an_unloaded_foot_glides_to_where_it_lands(run):
+    load = ground_force(run, "Right")
+    loaded = run.signals["right_foot.loaded"].to_numpy() > 0.5
+    x = load.point[:, 0]
+    flight = np.flatnonzero(~loaded)
+    assert (np.diff(x[flight[0] - 1 : flight[-1] + 2]) > 0).all()
+    np.testing.assert_allclose(np.diff(x[flight], 2), 0, atol=1e-12)
+    assert not ground_force(run, "Left").point.any()
+
+
+def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder, run):
+    """The moment about the origin, which must not depend on how it is written."""
+    _, columns = read_storage(opensim_folder / "ground_forces.mot")
+    assert all(np.isfinite(column).all() for column in columns.values())
+    for side in SIDES:
+        letter = side[0].lower()
+        force, point, torque = (
+            np.column_stack([columns[f"{name}{axis}"] for axis in "xyz"]) @ R_OW
+            for name in (f"ground_force_{letter}_v", f"ground_force_{letter}_p", f"ground_torque_{letter}_")
+        )
+        load = ground_force(run, side)
+        np.testing.assert_allclose(force, load.force, atol=1e-8)
+        expected = np.cross(load.point, load.force) + np.outer(load.free_moment, [0, 0, 1])
+        np.testing.assert_allclose(np.cross(point, force) + torque, expected, atol=1e-8)
+
+
+def test_external_loads_xml_names_columns_that_are_there(opensim_folder):
+    root = ET.parse(opensim_folder / "external_loads.xml").getroot()
+    _, columns = read_storage(opensim_folder / root.findtext(".//datafile"))
+    forces = root.findall(".//ExternalForce")
+    assert [force.findtext("applied_to_body") for force in forces] == ["calcn_r", "calcn_l"]
+    for force in forces:
+        for kind in ("force", "point", "torque"):
+            prefix = force.findtext(f"{kind}_identifier")
+            assert all(f"{prefix}{axis}" in columns for axis in "xyz")
+
+
+def test_markers_are_millimetres_in_opensims_axes(opensim_folder, run, signals):
+    paths, time, head = read_trc(opensim_folder / "markers.trc")
+    assert head["Units"] == "mm"
+    assert float(head["DataRate"]) == 200
+    np.testing.assert_allclose(time, signals[TIME].to_numpy(), atol=1e-9)
+    for name, path in marker_paths(run).items():
+        np.testing.assert_allclose(paths[name], 1000 * path @ R_OW.T, atol=1e-5)
+
+
+def test_markers_keep_their_distances_on_a_body(run):
+    paths = marker_paths(run)
+    skeleton = run.scenario.subject.skeleton
+    assert list(paths) == [marker.name for marker in markers(skeleton)]
+    on_body = {marker.name: marker for marker in markers(skeleton)}
+    for a, b in (("LASI", "RPSI"), ("RKNE", "RTHI"), ("LFHD", "RBHD"), ("RTOE", "RMT5")):
+        expected = np.linalg.norm(np.subtract(on_body[a].position, on_body[b].position))
+        np.testing.assert_allclose(np.linalg.norm(paths[a] - paths[b], axis=1), expected, rtol=1e-9)
+
+
+def test_csv_keeps_every_number(run, signals):
+    (path,) = export_run(run, "csv")
+    with path.open() as file:
+        names, *rows = csv.reader(file)
+    assert names == signals.column_names
+    np.testing.assert_array_equal(np.array(rows, dtype=float), matrix(signals, names))
+
+
+def test_mat_keeps_every_number(run, signals):
+    (path,) = export_run(run, "mat")
+    read = loadmat(path, simplify_cells=True)
+    np.testing.assert_array_equal(read["signals"][TIME], signals[TIME].to_numpy())
+    found = 1
+    for thing, quantities in read["signals"].items():
+        if isinstance(quantities, dict):
+            for quantity, values in quantities.items():
+                np.testing.assert_array_equal(values, signals[f"{thing}.{quantity}"].to_numpy())
+                found += 1
+    assert found == len(signals.column_names)
+    assert "stature: 1.68" in read["scenario"]
+
+
+def test_export_names_its_files_and_goes_where_it_is_told(run, tmp_path):
+    result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.output
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["signals.csv"]
+
+
+def test_unknown_format_is_refused(run, tmp_path):
+    with pytest.raises(ParameterError, match="allowed: opensim, c3d, csv, mat"):
+        export_run(run, "opensm", tmp_path)
+    assert set(FORMATS) == {"opensim", "c3d", "csv", "mat"}

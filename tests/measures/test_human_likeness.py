@@ -1,0 +1,196 @@
+"""A walk beside people: made-up walks that move as people do, or differ from them in a known way."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.measures.gait_measures import footfalls
+from humanwalk.measures.human_likeness import (
+    ANGLES,
+    CYCLE,
+    Likeness,
+    com_excursions,
+    compare,
+    force_humps,
+    has_two_humps,
+    late_stance_knee,
+    over_strides,
+    people,
+    people_com_excursion,
+)
+from humanwalk.measures.signals import TIME
+from humanwalk.measures.summary import GRAVITY, steady_from
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario
+
+MASS = 70.0
+WEIGHT = MASS * GRAVITY
+DUTY, STRIDE, LENGTH, WIDTH = 0.6, 1.0, 1.3, 0.12
+"""Of the made-up walk, see conftest.py: share of stance, time [s] and length of a stride [m], width of a step [m]."""
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return load_scenario("thesis", {"subject.mass": str(MASS)})
+
+
+def test_people_are_those_of_the_source():
+    for angle in ANGLES.values():
+        cycle, mean, sd = people(angle.people)
+        np.testing.assert_array_equal(cycle, np.arange(0, 101, 2))
+        assert sd.min() > 0.0
+        # Heel strike ends the cycle that it begins.
+        assert mean[0] == pytest.approx(mean[-1], abs=1.5)
+    _, knee, _ = people("knee_flexion_deg")
+    assert 65 <= np.arange(0, 101, 2)[knee.argmax()] <= 80
+    assert 50.0 < knee.max() < 70.0
+
+
+def test_who_moves_as_people_do_is_like_them(walk, scenario):
+    comparison = compare(walk(), scenario)
+    assert comparison.strides == {"Right": 7, "Left": 7}
+    for name, sides in comparison.curves.items():
+        for side, likeness in sides.items():
+            # People's pelvis as the left leg sees it is only nearly that of the right one half a stride before.
+            near = side == "Left" and name.startswith("pelvis")
+            assert likeness.rms.max() < (1.0 if near else 0.5), name
+            assert likeness.inside.min() == 1.0, name
+            if not (near and name == "pelvis tilt"):
+                assert likeness.correlation.min() > (0.9 if near else 0.95), name
+
+
+@given(shift=st.floats(-30, 30), scale=st.floats(0.2, 3.0))
+def test_correlation_knows_neither_offset_nor_scale_and_the_difference_is_the_offset(shift, scale):
+    cycle, mean, _ = people("knee_flexion_deg")
+    curve = np.interp(CYCLE, cycle, mean)
+    moved = shift + curve.mean() + scale * (curve - curve.mean())
+    likeness = Likeness.of(moved[None], "knee_flexion_deg")
+    assert likeness.correlation[0] == pytest.approx(1.0)
+    assert likeness.difference[0] == pytest.approx(shift, abs=1e-9)
+    assert likeness.rms[0] == pytest.approx(np.hypot(shift, (scale - 1) * curve.std()), abs=1e-6)
+
+
+def test_angle_that_stays_the_same_has_no_correlation():
+    assert np.isnan(Likeness.of(np.full((1, CYCLE.size), 5.0), "knee_flexion_deg").correlation).all()
+
+
+@pytest.mark.parametrize(("share", "inside"), [(0.0, 1.0), (0.99, 1.0), (1.01, 0.0)])
+def test_inside_is_within_one_standard_deviation(share, inside):
+    cycle, mean, sd = people("hip_flexion_deg")
+    curve = np.interp(CYCLE, cycle, mean + share * sd)
+    assert Likeness.of(curve[None], "hip_flexion_deg").inside[0] == inside
+
+
+def test_strides_are_counted_one_by_one(walk):
+    """One stride of seven with a stiff knee is one bad number of seven."""
+    signals = walk()
+    time = signals[TIME].to_numpy()
+    knee = np.where((time > 3.0) & (time < 4.0), 0.0, signals["RightLegTibiaMotion.angle_rad"].to_numpy())
+    strides = over_strides(signals, footfalls(signals, "Right"), np.degrees(knee))
+    bad = Likeness.of(strides, "knee_flexion_deg").rms > 10.0
+    assert np.flatnonzero(bad).tolist() == [2]
+
+
+def test_late_stance_knee_is_the_least_of_terminal_stance():
+    curve = np.full(CYCLE.size, 40.0)
+    curve[[20, 40, 60]] = 1.0, 12.0, 2.0
+    assert late_stance_knee(curve[None]) == pytest.approx([12.0])
+
+
+@pytest.mark.parametrize(("dip", "two"), [(0.8, True), (1.0, True), (1.08, False)])
+def test_humps_are_found(walk, dip, two):
+    signals = walk(humps=(1.15, dip, 1.1))
+    humps = force_humps(signals, "Right", footfalls(signals, "Right"), WEIGHT)
+    assert humps.mean(axis=0) == pytest.approx([1.15, dip, 1.1], abs=0.01)
+    assert set(has_two_humps(humps).tolist()) == {two}
+
+
+def test_impact_of_the_heel_is_no_hump(walk):
+    signals = walk()
+    time, force = signals[TIME].to_numpy(), signals["right_foot.force_z_N"].to_numpy()
+    impact = force + np.where(np.isclose(time % 1.0, 0.02), 2 * WEIGHT, 0.0)
+    knocked = signals.drop_columns("right_foot.force_z_N").append_column("right_foot.force_z_N", [impact])
+    humps = force_humps(knocked, "Right", footfalls(knocked, "Right"), WEIGHT)
+    assert humps[:, 0] == pytest.approx(1.1, abs=0.02)
+
+
+def test_measures_of_a_walk_are_as_it_was_made(walk, scenario):
+    measures = {measure.name: measure for measure in compare(walk(), scenario).measures}
+    made = {
+        "speed": LENGTH / STRIDE,
+        "step length": LENGTH / 2,
+        "cadence": 120 / STRIDE,
+        "share of stance": DUTY,
+        "share of double support": 2 * DUTY - 1,
+        "step width": WIDTH,
+        "centre of mass, vertical range": 0.036,
+        "centre of mass, lateral range": 0.04,
+        "ground force, first hump": 1.1,
+        "ground force, dip": 0.8,
+        "share of stances with two humps": 1.0,
+        "moment, hip flexion": 0.5,
+        "moment, ankle plantarflexion": 0.5,
+        "cost of transport": 6 * 35 * (2 / np.pi) / (WEIGHT * LENGTH),
+    }
+    for name, value in made.items():
+        assert measures[name].values.mean() == pytest.approx(value, rel=0.02), name
+
+
+def test_people_walk_within_what_is_said_of_them(walk, scenario):
+    """The walk made of people's angles and of textbook steps lies within people's values, where there are any."""
+    measures = {measure.name: measure for measure in compare(walk(), scenario).measures}
+    for name in ("speed", "step length", "least knee flexion, terminal stance", "centre of mass, lateral range"):
+        people = measures[name].people
+        assert people.source
+        assert people.low <= measures[name].values.mean() <= people.high, name
+    assert [measure.name for measure in measures.values() if measure.people and not measure.people.source] == []
+
+
+def test_drift_is_no_excursion(walk):
+    signals = walk()
+    drifting = signals["com.y_m"].to_numpy() + 0.3 * signals[TIME].to_numpy()
+    drifted = signals.drop_columns("com.y_m").append_column("com.y_m", [drifting])
+    for record in (signals, drifted):
+        assert com_excursions(record, footfalls(record, "Right"), "y") == pytest.approx(0.04, rel=0.01)
+
+
+@pytest.mark.parametrize("direction", ["vertical", "lateral"])
+def test_people_s_excursion_is_between_the_speeds_of_the_source_only(direction):
+    assert people_com_excursion(direction, 0.6) is None
+    assert people_com_excursion(direction, 1.7) is None
+    slow, fast = people_com_excursion(direction, 0.7), people_com_excursion(direction, 1.6)
+    middle = people_com_excursion(direction, 1.15)
+    assert middle.low == pytest.approx((slow.low + fast.low) / 2)
+    # Who walks faster rises more and sways less.
+    assert (fast.high > slow.high) == (direction == "vertical")
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (dict(duration=2.4), "strides: 1 of the right leg"),
+        (dict(standing=True), "strides: 0 of the right leg and 0 of the left"),
+        (dict(heading=np.radians(30)), "30 deg from straight ahead"),
+        (dict(heading=np.pi), "180 deg from straight ahead"),
+    ],
+    ids=["short", "standing", "aslant", "backward"],
+)
+def test_what_is_no_straight_walk_is_refused(walk, scenario, made, said):
+    with pytest.raises(ParameterError, match=said):
+        compare(walk(**made), scenario)
+
+
+def test_only_steady_strides_count(walk):
+    scenario = load_scenario("thesis", {"gait.ramp.duration": "3.5"})
+    assert steady_from(scenario) == 3.5
+    # Landings at 4, 5, 6, 7, 8 s.
+    assert compare(walk(), scenario).strides["Right"] == 4
+
+
+def test_moments_of_bending_and_stretching_are_apart(walk, scenario):
+    time = walk()[TIME].to_numpy()
+    torque = {f"{side}LegTibiaMotion.torque_N_m": 7.0 + 35.0 * np.sin(2 * np.pi * time) for side in ("Right", "Left")}
+    measures = {measure.name: measure.values for measure in compare(walk(**torque), scenario).measures}
+    assert measures["moment, knee flexion"] == pytest.approx(0.6, rel=0.01)
+    assert measures["moment, knee extension"] == pytest.approx(0.4, rel=0.01)

@@ -1,0 +1,173 @@
+"""The record: one named column with a unit for each number of each port, in the port's order."""
+
+import re
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder, EventStatus
+
+from humanwalk.body.joint_map import JointMap
+from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.measures.signals import TIME, Recorder, matrix, signal_columns
+from humanwalk.run.derived import WHEN, derived_signals
+from humanwalk.scenario import load_scenario
+
+PERIOD = 0.01
+LEVELS = {"balance.foot_force.enabled": "true", "balance.upper_body.enabled": "true"}
+ENDINGS = ("_m", "_m_s", "_N", "_N_m", "_rad", "_rad_s")
+WITHOUT_UNIT = (
+    r"\.((reference_)?quaternion_[wxyz]|saturated|loaded|friction_use|phase|scheduled|ik_residual|ik_iterations"
+    r"|ik_converged|solved|failures(_in_a_row)?)$"
+)
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    """A tenth of a second of a walker with every port that can be recorded; walker, root context, table."""
+    builder = DiagramBuilder()
+    walker = builder.AddNamedSystem("walker", make_walker(load_scenario("thesis", LEVELS)))
+    joint_map = JointMap.of(walker.GetSubsystemByName("plant"))
+    recorder = Recorder.add_to(builder, walker, joint_map, PERIOD)
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(0.1)
+    context = simulator.get_context()
+    return walker, walker.GetMyContextFromRoot(context), recorder.table(context)
+
+
+def test_column_names_are_unique(joints):
+    names = [name for names in signal_columns(joints).values() for name in names]
+    assert len(set(names)) == len(names)
+    assert all(names)
+    assert TIME not in names
+
+
+def test_every_column_names_its_unit(joints):
+    for names in signal_columns(joints).values():
+        for name in names:
+            assert name.endswith(ENDINGS) or re.search(WITHOUT_UNIT, name), name
+
+
+def test_a_column_for_every_element_of_every_port(recorded, joints):
+    walker, _, table = recorded
+    columns = {port: names for port, names in signal_columns(joints).items() if walker.HasOutputPort(port)}
+    for port, names in columns.items():
+        assert walker.GetOutputPort(port).size() == len(names), port
+    assert table.column_names == [TIME, *(name for names in columns.values() for name in names)]
+
+
+def test_every_vector_port_of_either_walker_is_recorded_or_others_follow_from_it(recorded, joints):
+    walkers = recorded[0], make_diagram(load_scenario("stand"))
+    ports = [walker.get_output_port(i) for walker in walkers for i in range(walker.num_output_ports())]
+    needed = {need for walker in walkers for one in derived_signals(walker) for need in one.needs} - {WHEN}
+    assert {port.get_name() for port in ports if port.size()} == set(signal_columns(joints)) | needed
+    for port in ports:
+        if port.size() and port.get_name() in signal_columns(joints):
+            assert port.size() == len(signal_columns(joints)[port.get_name()])
+
+
+LIMITED = {"actuators.effort_limits": "human"}
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides"),
+    [
+        ("thesis", LEVELS),
+        ("thesis", LIMITED),
+        ("comfortable", {}),
+        ("walk", {}),
+        ("walk", {"actuators.law": "implicit"}),
+        ("walk", {"contact": "asperity"}),
+    ],
+)
+def test_what_is_derived_afterwards_is_what_the_ports_show(name, overrides):
+    """To the last bit, at times on and off the control period and while the joints move."""
+    builder = DiagramBuilder()
+    walker = builder.AddNamedSystem("walker", make_diagram(load_scenario(name, overrides)))
+    recorder = Recorder.add_to(builder, walker, JointMap.of(walker.GetSubsystemByName("plant")), 0.003)
+    simulator = Simulator(builder.Build())
+    shown = {port: [] for one in recorder.derived for port in one.ports}
+    assert shown
+
+    def look(root_context):
+        context = walker.GetMyContextFromRoot(root_context)
+        for port, values in shown.items():
+            values.append(walker.GetOutputPort(port).Eval(context))
+        return EventStatus.DidNothing()
+
+    simulator.set_monitor(look)
+    simulator.AdvanceTo(0.03)
+    table = recorder.table(simulator.get_context())
+    for port, values in shown.items():
+        np.testing.assert_array_equal(matrix(table, recorder.columns[port]), values[::3], err_msg=port)
+
+
+def test_a_row_every_period(recorded):
+    _, _, table = recorded
+    np.testing.assert_allclose(table[TIME].to_numpy(), PERIOD * np.arange(11), atol=1e-12)
+
+
+def test_joint_columns_hold_their_own_joint(recorded):
+    walker, context, table = recorded
+    plant = walker.GetSubsystemByName("plant")
+    plant_context = plant.CreateDefaultContext()
+    state = walker.GetOutputPort("state").Eval(context)
+    plant.SetPositionsAndVelocities(plant_context, state)
+    for name in JointMap.of(plant).names:
+        joint = plant.GetJointByName(name)
+        assert table[f"{name}.angle_rad"][-1].as_py() == joint.get_angle(plant_context)
+        assert table[f"{name}.velocity_rad_s"][-1].as_py() == joint.get_angular_rate(plant_context)
+
+
+def test_desired_angles_belong_to_the_joints_of_their_name(recorded):
+    _, _, table = recorded
+    # The knee of the leg that swings first bends; the arms hang with bent elbows.
+    assert table["RightLegTibiaMotion.desired_angle_rad"][-1].as_py() > 0.3
+    assert table["LeftLegTibiaMotion.desired_angle_rad"][-1].as_py() < 0.2
+    assert table["LeftArmElbowMotion.desired_angle_rad"][-1].as_py() > 0.2
+
+
+def test_pelvis_columns_are_the_pelvis(recorded):
+    walker, context, table = recorded
+    plant = walker.GetSubsystemByName("plant")
+    plant_context = plant.CreateDefaultContext()
+    plant.SetPositionsAndVelocities(plant_context, walker.GetOutputPort("state").Eval(context))
+    pelvis = plant.GetBodyByName("Pelvis")
+    X_WP, V_WP = pelvis.EvalPoseInWorld(plant_context), pelvis.EvalSpatialVelocityInWorld(plant_context)
+    row = {name: column[-1].as_py() for name, column in zip(table.column_names, table.columns, strict=True)}
+    np.testing.assert_allclose([row[f"pelvis.{axis}_m"] for axis in "xyz"], X_WP.translation(), atol=1e-9)
+    np.testing.assert_allclose([row[f"pelvis.velocity_{axis}_m_s"] for axis in "xyz"], V_WP.translational(), atol=1e-9)
+    np.testing.assert_allclose(
+        [row[f"pelvis.angular_velocity_{axis}_rad_s"] for axis in "xyz"], V_WP.rotational(), atol=1e-9
+    )
+
+
+def test_right_is_right(recorded):
+    _, _, table = recorded
+    assert table["right_sole.y_m"][0].as_py() < 0 < table["left_sole.y_m"][0].as_py()
+    # The right foot swings first; the left one carries.
+    assert table["right_sole.z_m"][-1].as_py() > 0.01
+    assert table["left_foot.force_z_N"][-1].as_py() > 300.0
+    assert table["right_foot.force_z_N"][-1].as_py() == 0.0
+    assert table["left_foot.scheduled"][-1].as_py() == 1.0
+    assert table["right_foot.scheduled"][-1].as_py() == 0.0
+
+
+def test_unsupported_walker_has_no_columns_of_the_support(joints):
+    walker = make_walker(load_scenario("thesis", {"balance.support.enabled": "false"}))
+    builder = DiagramBuilder()
+    builder.AddSystem(walker)
+    recorder = Recorder.add_to(builder, walker, joints, PERIOD)
+    simulator = Simulator(builder.Build())
+    simulator.Initialize()
+    table = recorder.table(simulator.get_context())
+    assert table.num_rows == 1
+    assert not [name for name in table.column_names if name.startswith(("support.", "balance."))]
+
+
+def test_matrix_keeps_the_order_of_the_columns_asked_for(recorded):
+    _, _, table = recorded
+    both = matrix(table, ["com.z_m", "com.x_m"])
+    np.testing.assert_array_equal(both[:, 0], table["com.z_m"].to_numpy())
+    np.testing.assert_array_equal(both[:, 1], table["com.x_m"].to_numpy())

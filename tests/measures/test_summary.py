@@ -1,0 +1,274 @@
+"""Measures of made-up signals whose values are known."""
+
+import json
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.measures.signals import TIME, signal_columns
+from humanwalk.measures.summary import (
+    CONTACT_OFF_N,
+    CONTACT_ON_N,
+    GRAVITY,
+    SHORTEST_PHASE_S,
+    contact_with_hysteresis,
+    cost_of_transport,
+    foot_lift,
+    foot_line_error,
+    steady_from,
+    summarize,
+    touchdowns,
+    tracking_error,
+)
+from humanwalk.run.simulate import Outcome
+from humanwalk.scenario import load_scenario
+
+PERIOD = 0.01
+SPEED = 1.3
+STRIDE = 0.6
+DUTY = 0.6
+LIFT = 0.12
+MASS = 70.0
+
+
+def down(time, lag):
+    return (time / STRIDE + lag) % 1.0 < DUTY - 1e-9
+
+
+def walk_of(joints, duration=5.0, **changes) -> pa.Table:
+    """Zeros everywhere but for feet that come down and a centre of mass that advances."""
+    time = PERIOD * np.arange(round(duration / PERIOD) + 1)
+    data = {name: np.zeros_like(time) for names in signal_columns(joints).values() for name in names}
+    data["com.x_m"] = SPEED * time
+    for side, lag in (("right", 0.0), ("left", 0.5)):
+        phase = (time / STRIDE + lag) % 1.0
+        swing = np.clip((phase - DUTY) / (1 - DUTY), 0.0, 1.0)
+        data[f"{side}_foot.force_z_N"] = np.where(down(time, lag), MASS * GRAVITY, 0.0)
+        data[f"{side}_sole.z_m"] = 0.01 + np.where(down(time, lag), 0.0, LIFT * np.sin(np.pi * swing))
+    for name, value in changes.items():
+        data[name] = np.broadcast_to(value(time) if callable(value) else value, time.shape).astype(float)
+    return pa.table({TIME: time, **data})
+
+
+def summary_of(signals, end="completed", overrides=None):
+    return summarize(Outcome(load_scenario("thesis", overrides), signals, end, wall_time=2.0), "made up")
+
+
+# The whole.
+
+
+def test_summary_has_the_keys_that_are_promised(joints):
+    summary = summary_of(walk_of(joints))
+    assert {
+        "scenario",
+        "survived",
+        "duration_s",
+        "fall_time_s",
+        "mean_speed_m_s",
+        "lateral_drift_m",
+        "foot_lift_m",
+        "steps",
+        "support_force_rms_N",
+        "external_support",
+        "peak_torque_N_m",
+        "tracking_error_rad",
+        "cost_of_transport",
+        "realtime_factor",
+        "versions",
+        "seed",
+    } <= summary.keys()
+    assert set(summary["foot_lift_m"]) == {"left", "right"}
+    assert tuple(summary["peak_torque_N_m"]) == joints.names
+    assert tuple(summary["tracking_error_rad"]) == joints.names
+
+
+def test_summary_is_strict_json(joints):
+    for signals in (walk_of(joints), walk_of(joints, 0.1), walk_of(joints, 0.0)):
+        summary = summary_of(signals)
+        assert json.loads(json.dumps(summary, allow_nan=False)) == summary
+
+
+def test_summary_of_a_walk_of_known_measures(joints):
+    summary = summary_of(
+        walk_of(
+            joints,
+            **{
+                "com.y_m": lambda t: -0.01 * t,
+                "support.force_x_N": 3.0,
+                "support.force_z_N": 4.0,
+                "support.torque_y_N_m": 2.0,
+                "pelvis.reference_x_m": 0.03,
+                "pelvis.reference_z_m": -0.04,
+            },
+        )
+    )
+    assert summary["mean_speed_m_s"] == pytest.approx(SPEED)
+    assert summary["distance_m"] == pytest.approx(5 * SPEED)
+    assert summary["lateral_drift_m"] == pytest.approx(-0.05)
+    assert summary["support_force_rms_N"] == pytest.approx(5.0)
+    assert summary["support_torque_rms_N_m"] == pytest.approx(2.0)
+    assert summary["pelvis_tracking_rms_m"] == pytest.approx(0.05)
+    assert summary["realtime_factor"] == pytest.approx(2.5)
+    assert summary["survived"] is True
+    assert summary["fall_time_s"] is None
+    assert summary["external_support"] is True
+
+
+def test_speed_leaves_out_the_ramp(joints):
+    begin = steady_from(load_scenario("thesis"))
+    signals = walk_of(joints, **{"com.x_m": lambda t: np.where(t < begin, 0.0, SPEED * (t - begin))})
+    assert summary_of(signals)["mean_speed_m_s"] == pytest.approx(SPEED, rel=1e-2)
+
+
+def test_steady_walk_begins_with_the_later_of_ramp_and_first_landing():
+    assert steady_from(load_scenario("thesis", {"gait.ramp.duration": "3"})) == 3.0
+    quick = load_scenario("thesis", {"gait.ramp.duration": "0"})
+    # The first landing is L (1 / (2 duty) - 1/2) on.
+    assert steady_from(quick) == pytest.approx(0.5 * (1 / 1.2 - 0.5) / 1.4)
+
+
+def test_run_without_a_steady_part_has_null_there(joints):
+    summary = summary_of(walk_of(joints, 0.2), end="fell")
+    for key in ("mean_speed_m_s", "support_force_rms_N", "pelvis_tracking_rms_m", "cost_of_transport"):
+        assert summary[key] is None
+    assert set(summary["tracking_error_rad"].values()) == {None}
+    assert summary["foot_lift_m"] == {"left": None, "right": None}
+    assert summary["survived"] is False
+    assert summary["fall_time_s"] == pytest.approx(0.2)
+
+
+def test_walk_that_never_becomes_steady_by_its_scenario_has_null_there(joints):
+    summary = summary_of(walk_of(joints), overrides={"gait.ramp.speed": "0"})
+    assert summary["mean_speed_m_s"] is None
+    assert summary["steady_from_s"] is None
+    json.dumps(summary, allow_nan=False)
+
+
+def test_run_that_ended_in_no_number_is_still_strict_json(joints):
+    name = joints.names[0]
+    ends_badly = {column: lambda t: np.where(t == t[-1], np.nan, t) for column in ("com.x_m", f"{name}.torque_N_m")}
+    summary = summary_of(walk_of(joints, **ends_badly), end="not a number")
+    assert summary["mean_speed_m_s"] is None
+    assert summary["peak_torque_N_m"][name] is None
+    json.dumps(summary, allow_nan=False)
+
+
+@pytest.mark.parametrize("end", ["interrupted", "not a number", "solver failed: x"])
+def test_run_that_ended_otherwise_did_not_fall(joints, end):
+    summary = summary_of(walk_of(joints), end=end)
+    assert (summary["survived"], summary["fall_time_s"], summary["end"]) == (False, None, end)
+
+
+def test_unsupported_run_says_so(joints):
+    signals = walk_of(joints)
+    signals = signals.drop_columns([name for name in signals.column_names if name.startswith("support.")])
+    summary = summary_of(signals, overrides={"balance.support.enabled": "false"})
+    assert summary["external_support"] is False
+    assert summary["support_force_rms_N"] == 0.0
+
+
+def test_saturated_share_and_peak_torque_are_of_their_joint(joints):
+    name = joints.names[5]
+    signals = walk_of(
+        joints,
+        **{f"{name}.saturated": lambda t: t < 2.5, f"{name}.torque_N_m": lambda t: np.where(t == 1.0, -80.0, 30.0)},
+    )
+    summary = summary_of(signals)
+    assert summary["saturated_share"][name] == pytest.approx(0.5, abs=0.01)
+    assert summary["peak_torque_N_m"][name] == 80.0
+    assert sum(summary["saturated_share"].values()) == summary["saturated_share"][name]
+    assert sum(summary["peak_torque_N_m"].values()) == 80.0
+
+
+# Its parts.
+
+
+def test_contact_has_hysteresis():
+    between = 0.5 * (CONTACT_ON_N + CONTACT_OFF_N)
+    levels = np.repeat([0.0, between, 500.0, between, 0.0, between], 20)
+    contact = contact_with_hysteresis(PERIOD * np.arange(levels.size), levels)
+    assert contact[::20].tolist() == [False, False, True, True, False, False]
+
+
+@pytest.mark.parametrize(("length", "counts"), [(0.5, False), (1.5, True)])
+@pytest.mark.parametrize("lifted", [True, False])
+def test_bounce_shorter_than_a_phase_is_merged(length, counts, lifted):
+    time = 0.001 * np.arange(1000)
+    inside = (time >= 0.5) & (time < 0.5 + length * SHORTEST_PHASE_S)
+    force = np.where(inside == lifted, 0.0, 500.0)
+    changes = np.count_nonzero(np.diff(contact_with_hysteresis(time, force)))
+    assert changes == (2 if counts else 0)
+
+
+def test_first_rows_without_force_are_no_landing(joints):
+    standing = {f"{side}_foot.force_z_N": lambda t: np.where(t < 0.005, 0.0, 350.0) for side in ("right", "left")}
+    signals = walk_of(joints, **standing)
+    assert touchdowns(signals, "Right").size == touchdowns(signals, "Left").size == 0
+    assert summary_of(signals)["steps"] == 0
+
+
+@given(st.lists(st.tuples(st.integers(1, 12), st.sampled_from([0.0, 35.0, 500.0])), min_size=1, max_size=12))
+def test_no_phase_but_the_last_is_short(pieces):
+    force = np.concatenate([np.full(length, level) for length, level in pieces])
+    time = PERIOD * np.arange(force.size)
+    contact = contact_with_hysteresis(time, force)
+    edges = np.flatnonzero(np.diff(contact)) + 1
+    assert (np.diff(time[np.concatenate(([0], edges))]) >= SHORTEST_PHASE_S - 1e-9).all()
+
+
+def test_touchdowns_are_when_the_force_comes_back(joints):
+    signals = walk_of(joints)
+    np.testing.assert_allclose(touchdowns(signals, "Right"), STRIDE * np.arange(1, 9), atol=1.5 * PERIOD)
+    np.testing.assert_allclose(touchdowns(signals, "Left"), STRIDE * (np.arange(8) + 0.5), atol=1.5 * PERIOD)
+    assert summary_of(signals)["steps"] == 16
+
+
+def test_foot_lift_is_the_peak_above_the_start_and_needs_a_stride(joints):
+    signals = walk_of(joints)
+    assert foot_lift(signals, "Right") == pytest.approx(LIFT, rel=0.02)
+    assert foot_lift(signals, "Left") == pytest.approx(LIFT, rel=0.02)
+    assert foot_lift(walk_of(joints, 0.5), "Right") is None
+
+
+def test_foot_line_error_is_the_greatest_either_way(joints):
+    signals = walk_of(joints, **{"right_sole.y_m": lambda t: -0.1 + np.where(t == 2.0, -0.03, 0.02)})
+    assert foot_line_error(signals, "Right") == pytest.approx(0.05)
+    assert foot_line_error(signals, "Left") == 0.0
+
+
+def test_tracking_error_is_root_mean_square(joints):
+    name = joints.names[3]
+    signals = walk_of(joints, **{f"{name}.desired_angle_rad": lambda t: np.where(t < 2.5, 0.0, 0.2)})
+    rows = signals[TIME].to_numpy() >= 2.5
+    assert tracking_error(signals, name, rows) == pytest.approx(0.2)
+    assert tracking_error(signals, name, ~rows) == 0.0
+    assert tracking_error(signals, name, rows & ~rows) is None
+
+
+def test_cost_of_transport_of_a_known_power(joints):
+    first, second = joints.names[:2]
+    signals = walk_of(
+        joints,
+        **{
+            f"{first}.torque_N_m": 20.0,
+            f"{first}.velocity_rad_s": 2.0,
+            f"{second}.torque_N_m": 10.0,
+            # Braking costs too: nothing is regained.
+            f"{second}.velocity_rad_s": -3.0,
+        },
+    )
+    every = np.ones(signals.num_rows, dtype=bool)
+    expected = 70.0 / (MASS * GRAVITY * SPEED)
+    assert cost_of_transport(signals, every, MASS) == pytest.approx(expected)
+    half = signals[TIME].to_numpy() > 2.0
+    assert cost_of_transport(signals, half, MASS) == pytest.approx(expected)
+    assert summary_of(signals)["cost_of_transport"] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("way", [0.0, -1.0])
+def test_cost_of_transport_of_no_way_forward_is_null(joints, way):
+    signals = walk_of(joints, **{"com.x_m": lambda t: way * t})
+    assert cost_of_transport(signals, np.ones(signals.num_rows, dtype=bool), MASS) is None

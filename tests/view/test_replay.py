@@ -1,0 +1,230 @@
+import _thread
+import base64
+import io
+import re
+import signal
+import socket
+import threading
+import urllib.error
+import urllib.request
+import webbrowser
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from rich.console import Console
+
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import REPLAY, SCENARIO, SIGNALS, SUMMARY
+from humanwalk.scenario import load_scenario
+from humanwalk.view.replay import add_visualizer, make_meshcat, replay_server, serve_replay, static_page
+
+FRAME_RATE = 32.0
+DURATION = 0.25
+"""Long enough for a foot to be in the air at the end [s]."""
+
+LISTENING = "0A"
+LOOPBACK = {"0100007F", "00000000000000000000000001000000"}
+TITLE = 'a "walk" & <more>'
+
+
+class Elements(HTMLParser):
+    def __init__(self, page):
+        super().__init__()
+        self.found = []
+        self.text = {}
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+
+    def handle_data(self, data):
+        if self.found:
+            tag = self.found[-1][0]
+            self.text[tag] = self.text.get(tag, "") + data
+
+
+@pytest.fixture(scope="module")
+def meshcat():
+    return make_meshcat()
+
+
+@pytest.fixture(scope="module")
+def page(meshcat):
+    builder = DiagramBuilder()
+    walker = builder.AddSystem(make_walker(load_scenario("thesis")))
+    ports = {name: walker.GetOutputPort(name) for name in ("query_object", "foot_forces")}
+    add_visualizer(builder, ports["query_object"], meshcat, FRAME_RATE, ports["foot_forces"])
+    Simulator(builder.Build()).AdvanceTo(DURATION)
+    return static_page(meshcat, TITLE)
+
+
+@pytest.fixture(scope="module")
+def animation(page):
+    """The recording inside the page: one msgpack command."""
+    commands = [base64.b64decode(code) for code in re.findall(r"base64,([A-Za-z0-9+/=]+)", page)]
+    (animation,) = [command for command in commands if b"set_animation" in command]
+    return animation
+
+
+@pytest.fixture(scope="module")
+def elements(page):
+    return Elements(page)
+
+
+@pytest.fixture
+def run(tmp_path):
+    for name in (SCENARIO, SIGNALS, SUMMARY):
+        (tmp_path / name).touch()
+    (tmp_path / REPLAY).write_text("<p>the walk</p>")
+    return tmp_path
+
+
+def listening_addresses(port):
+    """Local addresses, in the kernel's hexadecimal, at which a port is listened to."""
+    addresses = set()
+    for table in (Path("/proc/net/tcp"), Path("/proc/net/tcp6")):
+        if not table.exists():
+            continue
+        for line in table.read_text().splitlines()[1:]:
+            _, local, _, state = line.split()[:4]
+            address, _, hexadecimal = local.partition(":")
+            if state == LISTENING and int(hexadecimal, 16) == port:
+                addresses.add(address)
+    return addresses
+
+
+def test_no_element_of_the_page_names_another_file_or_host(elements):
+    references = [
+        attributes[name]
+        for _, attributes in elements.found
+        for name in ("src", "href", "srcset", "data", "action", "poster")
+        if name in attributes
+    ]
+    assert references
+    assert all(reference.startswith("data:") for reference in references)
+
+
+def test_scripts_and_styles_fetch_only_what_the_page_holds(elements):
+    fetched = re.findall(r'^fetch\("([^"]{,30})', elements.text["script"], re.MULTILINE)
+    assert fetched
+    assert all(url.startswith("data:") for url in fetched)
+    assert "url(" not in elements.text["style"]
+    assert "@import" not in elements.text["style"]
+
+
+def test_page_forbids_the_browser_to_ask_any_host(elements):
+    (policy,) = [
+        attributes["content"]
+        for tag, attributes in elements.found
+        if tag == "meta" and attributes.get("http-equiv") == "Content-Security-Policy"
+    ]
+    directives = dict(directive.strip().split(" ", 1) for directive in policy.split(";"))
+    assert directives.pop("default-src") == "'none'"
+    assert {source for sources in directives.values() for source in sources.split()} == {
+        "'unsafe-inline'",
+        "data:",
+        "blob:",
+    }
+
+
+def test_page_carries_its_title_as_text(elements):
+    assert elements.text["title"].strip() == TITLE
+
+
+def test_page_holds_the_recorded_walker_and_the_view_that_follows_it(animation):
+    for path in (b"/drake/visualizer/human/Pelvis", b"/drake/visualizer/human/LeftLeg_Tibia"):
+        assert path in animation
+    # A msgpack string is preceded by its length: the scene itself moves, not only what is in it.
+    assert b"\xa6/drake" in animation
+
+
+@pytest.mark.parametrize("side", ["Right", "Left"])
+@pytest.mark.parametrize("part", ["", "/head", "/shaft"])
+def test_force_arrows_are_recorded_at_every_frame(animation, side, part):
+    """A track that ends before the others would repeat out of step with them."""
+    path = f"/drake/foot_force/{side}{part}".encode()
+    _, found, track = animation.partition(bytes([0xA0 + len(path)]) + path if len(path) < 32 else path)
+    assert found
+    clip = track.partition(b"path")[0]
+    last_frame = bytes([int(DURATION * FRAME_RATE)])
+    assert b"\xa4time" + last_frame in clip
+
+
+def test_page_has_one_player(elements):
+    names = [attributes.get("id") for _, attributes in elements.found]
+    assert names.count("player") == 1
+    assert ("input", "range") in [(tag, attributes.get("type")) for tag, attributes in elements.found]
+
+
+def test_server_knows_only_the_page():
+    with replay_server(b"<p>the walk</p>") as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        root = f"http://127.0.0.1:{server.server_port}"
+        with urllib.request.urlopen(f"{root}/") as answer:
+            assert answer.read() == b"<p>the walk</p>"
+            assert answer.headers.get_content_type() == "text/html"
+        for other in ("/replay.html", "/scenario.yaml", "/../", "/?"):
+            with pytest.raises(urllib.error.HTTPError) as error:
+                urllib.request.urlopen(root + other)
+            assert error.value.code == 404
+            error.value.close()
+        server.shutdown()
+
+
+def test_server_listens_on_the_loopback_only():
+    with replay_server(b"") as server:
+        assert server.socket.getsockname()[0] == "127.0.0.1"
+        assert server.address_family == socket.AF_INET
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc/net/tcp to see open ports in")
+def test_meshcat_listens_on_the_loopback_only(meshcat):
+    addresses = listening_addresses(meshcat.port())
+    assert addresses
+    assert addresses <= LOOPBACK
+
+
+def test_replay_opens_the_page_and_ends_at_ctrl_c(run, monkeypatch):
+    seen = []
+
+    def browse_and_press_ctrl_c(url):
+        with urllib.request.urlopen(url) as answer:
+            seen.append(answer.read().decode())
+        _thread.interrupt_main()
+
+    monkeypatch.setattr(webbrowser, "open", browse_and_press_ctrl_c)
+    # Whoever starts the tests in the background may have made Python deaf to Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    output = io.StringIO()
+    try:
+        serve_replay(run, open_browser=True, console=Console(file=output))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == ["<p>the walk</p>"]
+    assert re.search(r"http://127\.0\.0\.1:\d+/", output.getvalue())
+
+
+def test_replay_leaves_the_browser_alone_when_asked_to(run, monkeypatch):
+    def press_ctrl_c(self, *_):
+        raise KeyboardInterrupt
+
+    opened = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    monkeypatch.setattr("humanwalk.view.replay.ThreadingHTTPServer.serve_forever", press_ctrl_c)
+    serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
+    assert opened == []
+
+
+def test_run_without_replay_is_refused_with_a_mend(run):
+    (run / REPLAY).unlink()
+    with pytest.raises(ParameterError, match=r"no replay\.html; allowed: .*; walk again without --no-replay"):
+        serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
+
+
+def test_folder_without_run_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="no run"):
+        serve_replay(tmp_path, open_browser=False, console=Console(file=io.StringIO()))

@@ -1,0 +1,158 @@
+"""What `humanwalk report` says of a run, and where it says no."""
+
+import base64
+import html
+import json
+import re
+
+import pyarrow.parquet as pq
+import pytest
+from typer.testing import CliRunner
+
+from humanwalk.cli.main import app
+from humanwalk.measures.human_likeness import ANGLES
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run
+from humanwalk.scenario import dump_scenario, load_scenario
+from humanwalk.view.report import (
+    CURVE_HEADER,
+    MEASURE_HEADER,
+    REPORT,
+    compare_run,
+    curve_rows,
+    measure_rows,
+    sources,
+    to_json,
+    write_report,
+)
+
+
+@pytest.fixture
+def make_run(walk, tmp_path):
+    """Writes the run of a walk of people's angles, by how it ended and what it is made of."""
+
+    def make(end="completed", **made):
+        signals = walk(**made)
+        for side in ("right", "left"):
+            signals = signals.append_column(f"{side}_foot.force_x_N", signals[f"{side}_foot.force_z_N"])
+        (tmp_path / SCENARIO).write_text(dump_scenario(load_scenario("thesis", {"description": "A <b>walk</b>"})))
+        pq.write_table(signals, tmp_path / SIGNALS)
+        summary = {"end": end, "duration_s": 8.0, "steady_from_s": 0.4}
+        (tmp_path / SUMMARY).write_text(json.dumps(summary))
+        return Run.open(tmp_path)
+
+    return make
+
+
+def report(*arguments):
+    return CliRunner().invoke(app, ["report", *map(str, arguments)], env={"COLUMNS": "120"})
+
+
+def test_every_angle_and_measure_has_a_row(make_run):
+    comparison = compare_run(make_run())
+    angles, measures = list(curve_rows(comparison)), list(measure_rows(comparison))
+    assert [row[0].split(",")[0] for row in angles] == list(ANGLES)
+    assert all(len(row) == len(CURVE_HEADER) for row in angles)
+    assert [row[0].split(" [")[0] for row in measures] == [measure.name for measure in comparison.measures]
+    assert all(len(row) == len(MEASURE_HEADER) for row in measures)
+
+
+def test_rows_say_value_people_and_source(make_run):
+    comparison = compare_run(make_run())
+    rows = {row[0]: row[1:] for row in measure_rows(comparison)}
+    assert rows["speed [m/s]"][:2] == ("1.30 ± 0.00", "1.28 to 1.43")
+    assert rows["step width [m]"][:2] == ("0.120 ± 0.000", "0.121")
+    assert "Donelan" in sources(comparison)[int(rows["step width [m]"][2]) - 1]
+    # No value without a source, no source without a value.
+    assert all((row[1] == "") == (row[2] == "") for row in rows.values())
+    assert rows["moment, knee extension [N m/kg]"][1:] == ("", "")
+
+
+def test_numbers_for_a_program_are_stride_by_stride(make_run):
+    told = to_json(compare_run(make_run()))
+    assert told["strides"] == {"right": 7, "left": 7}
+    for sides in told["angles"].values():
+        for numbers in sides.values():
+            assert {len(values) for values in numbers.values()} == {7}
+    assert len(told["measures"]["step width"]["values"]) == 16
+    assert told["measures"]["step width"]["people"]["source"]
+    json.dumps(told, allow_nan=False)
+
+
+def test_angle_that_never_moves_has_no_correlation_and_still_a_report(make_run):
+    run = make_run()
+    signals = run.signals.to_pydict()
+    signals["RightLegTibiaMotion.angle_rad"] = [0.3] * run.signals.num_rows
+    pq.write_table(type(run.signals).from_pydict(signals), run.path / SIGNALS)
+    told = to_json(compare_run(Run.open(run.path)))
+    assert told["angles"]["knee"]["right"]["correlation"] == [None] * 7
+    assert None not in told["angles"]["knee"]["right"]["rms_deg"]
+
+
+def test_page_stands_by_itself(make_run):
+    run = make_run()
+    page = write_report(run, compare_run(run)).read_text()
+    assert "A &lt;b&gt;walk&lt;/b&gt;" in page
+    assert "$" not in html.unescape(re.sub(r'src="[^"]*"', "", page))
+    links = re.findall(r'(?:src|href)="([^"]*)"', page)
+    assert len(links) == 3
+    for link in links:
+        kind, data = link.split(",")
+        assert kind == "data:image/svg+xml;base64"
+        assert b"</svg>" in base64.b64decode(data)
+    assert page == write_report(run, compare_run(run)).read_text()
+
+
+def test_command_writes_the_page_and_prints_the_tables(make_run):
+    run = make_run()
+    result = report(run.path)
+    assert result.exit_code == 0
+    assert "knee, flexion" in result.stdout
+    assert "cadence [1/min]" in result.stdout
+    assert "Donelan" in result.stdout
+    assert str(run.path / REPORT) in result.stderr
+    assert (run.path / REPORT).is_file()
+
+
+def test_json_is_all_that_is_printed_and_nothing_is_written(make_run):
+    run = make_run()
+    result = report(run.path, "--json")
+    assert json.loads(result.stdout) == to_json(compare_run(run))
+    assert not (run.path / REPORT).exists()
+
+
+@pytest.mark.parametrize("end", ["fell", "not a number", "solver failed: no"])
+def test_run_that_did_not_stay_up_is_refused(make_run, end):
+    with pytest.raises(ParameterError, match=f"ended with '{end}' at 8.00 s; allowed"):
+        compare_run(make_run(end))
+
+
+@pytest.mark.parametrize("end", ["interrupted", "unfinished"])
+def test_run_that_was_stopped_is_compared_as_far_as_it_went(make_run, end):
+    assert compare_run(make_run(end)).strides["Right"] == 7
+
+
+@pytest.mark.parametrize(
+    ("made", "said"), [({"standing": True}, "0 of the right leg"), ({"duration": 1.9}, "strides: ")]
+)
+def test_run_without_strides_is_refused_by_its_name(make_run, made, said):
+    run = make_run(**made)
+    with pytest.raises(ParameterError, match=said) as error:
+        compare_run(run)
+    assert str(error.value).startswith(f"{run.path}: strides: ")
+    assert "\n" not in str(error.value)
+
+
+def test_page_that_cannot_be_written_leaves_the_one_before(make_run, monkeypatch):
+    run = make_run()
+    (run.path / REPORT).write_text("before")
+
+    def full(self, *arguments, **options):
+        raise OSError(28, "No space left on device")
+
+    comparison = compare_run(run)
+    monkeypatch.setattr(type(run.path), "write_text", full)
+    with pytest.raises(ParameterError, match="No space left"):
+        write_report(run, comparison)
+    assert (run.path / REPORT).read_text() == "before"
+    assert [path.name for path in run.path.iterdir() if path.name.startswith(".")] == []

@@ -1,0 +1,47 @@
+"""The zero-moment point stays over the foot that carries, over its ball, or over both feet and between."""
+
+import cmath
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.walking.base_of_support import BaseOfSupport
+
+SUPPORT = BaseOfSupport()
+points = st.builds(complex, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+headings = st.floats(-3.0, 3.0)
+
+
+@given(points, points, headings, st.booleans())
+def test_it_stays_over_the_stance_foot(zmp, stance, heading, on_ball):
+    kept = (SUPPORT.supported(zmp, stance, heading, on_ball=on_ball) - stance) / cmath.exp(1j * heading)
+    assert (SUPPORT.ball if on_ball else -SUPPORT.back) - 1e-9 <= kept.real <= SUPPORT.front + 1e-9
+    assert abs(kept.imag) <= SUPPORT.half_width + 1e-9
+
+
+@given(points, points, headings)
+def test_what_is_supported_stays_where_it_is(zmp, stance, heading):
+    once = SUPPORT.supported(zmp, stance, heading)
+    assert SUPPORT.supported(once, stance, heading) == pytest.approx(once, abs=1e-9)
+
+
+def test_between_two_feet_it_may_be_anywhere_on_the_way():
+    for share in (0.0, 0.3, 0.7, 1.0):
+        zmp = share * (0.6 + 0.16j)
+        assert SUPPORT.supported(zmp, 0.6 + 0.16j, 0.0, other=0.0) == pytest.approx(zmp)
+    assert SUPPORT.supported(0.3 + 0.08j, 0.6 + 0.16j, 0.0) != pytest.approx(0.3 + 0.08j)
+
+
+@given(st.floats(-3.0, 3.0))
+def test_between_two_feet_an_error_sideways_counts_more_than_one_forward(heading):
+    u = cmath.exp(1j * heading)
+    stance, old = 0.5 * u, 0.16j * u
+    outward, back = (SUPPORT.supported(stance + error * u, stance, heading, old) for error in (-0.2 - 0.2j, -0.2))
+    # Behind and outward: only the front foot is outward.
+    assert abs(outward - stance) < SUPPORT.back + SUPPORT.half_width
+    assert abs(back - stance) > SUPPORT.back + SUPPORT.half_width
+
+
+def test_the_pendulum_stands_before_the_ankle():
+    assert SUPPORT.middle_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.middle)

@@ -1,0 +1,64 @@
+"""The centre of mass vaults over each stance leg, lower between two steps the faster the walk."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.walking.com_height import ComHeight
+
+HEIGHT = ComHeight()
+STEP = 0.52
+speeds = st.floats(-1.0, 1.6)
+
+
+@given(st.floats(0.0, STEP), speeds)
+def test_rates_are_derivatives(t, speed):
+    h = 1e-5
+    before, here, after = (HEIGHT.arc(t + d, STEP, speed) for d in (-h, 0.0, h))
+    assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], abs=1e-5)
+    assert (after[1] - before[1]) / (2 * h) == pytest.approx(here[2], abs=1e-4)
+
+
+@given(speeds)
+def test_the_top_is_as_high_at_every_speed(speed):
+    top = HEIGHT.arc(HEIGHT.lowest + 0.5 * STEP, STEP, speed)[0]
+    assert top == pytest.approx(HEIGHT.below_top(speed))
+
+
+def test_it_is_lowest_soon_after_touchdown():
+    heights = {t / 100: HEIGHT.arc(t / 100, STEP, 1.4)[0] for t in range(52)}
+    assert min(heights, key=heights.get) == pytest.approx(HEIGHT.lowest)
+
+
+def test_in_standing_there_is_no_arc():
+    assert HEIGHT.arc(0.2, STEP, 0.0) == pytest.approx((0.0, 0.0, 0.0))
+
+
+LEG, STANDING = 0.864, 0.97
+distances = st.floats(-0.5, 0.5)
+
+
+@given(distances, distances)
+def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x, y):
+    highest = HEIGHT.highest_for(complex(x, y), LEG, STANDING)
+    assert highest <= STANDING
+    beyond = max(abs(x) - HEIGHT.free_reach, 0.0), max(abs(y) - HEIGHT.free_spread, 0.0)
+    hip = LEG + highest - STANDING
+    assert hip**2 + beyond[0] ** 2 + beyond[1] ** 2 == pytest.approx(LEG**2)
+
+
+def test_an_ordinary_step_needs_no_lower_body():
+    assert HEIGHT.highest_for(0.37 + 0.08j, LEG, STANDING) == STANDING
+
+
+def test_it_goes_down_for_a_long_step_sooner_than_it_comes_up():
+    down, up = (HEIGHT.approach(0.95, 0.0, 0.90, 0.004, stretched)[1] for stretched in (True, False))
+    assert down < up < 0.0
+
+
+def test_the_mean_height_comes_to_its_goal_without_overshoot():
+    height, rate = 0.97, 0.0
+    for _ in range(1000):
+        height, rate, _ = HEIGHT.approach(height, rate, 0.93, 0.004, False)
+        assert height >= 0.93 - 1e-6
+    assert height == pytest.approx(0.93, abs=1e-4)

@@ -1,0 +1,46 @@
+"""A foot rolls over its heel when it lands and over its ball when it leaves, the faster the walk the farther."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.walking.foot_rockers import FootRockers
+from humanwalk.walking.walking_reference import FootTask
+
+ROCKERS = FootRockers()
+DOUBLE_SUPPORT = 0.1
+
+
+def over_ball(since, speed=1.2):
+    return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, speed)
+
+
+def test_heels_rise_in_a_walk_that_is_fast_enough():
+    assert ROCKERS.rises(1.0)
+    assert not ROCKERS.rises(0.0)
+    assert not ROCKERS.rises(-1.0)
+
+
+def test_the_heel_rises_from_flat_to_its_pitch():
+    assert over_ball(0.0).pitch[:2] == pytest.approx((0.0, 0.0))
+    assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT).pitch[0] == pytest.approx(ROCKERS.pitch)
+    assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6).pitch[0] == pytest.approx(0.6 * ROCKERS.pitch)
+
+
+@given(st.floats(0.01, 0.19))
+def test_rates_are_derivatives(since):
+    h = 1e-5
+    before, here, after = (over_ball(since + d).pitch for d in (-h, 0.0, h))
+    assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], rel=1e-4)
+    assert (after[1] - before[1]) / (2 * h) == pytest.approx(here[2], rel=1e-4)
+
+
+def test_toes_stay_on_the_ground_while_the_foot_pitches():
+    reference = over_ball(0.15)
+    assert reference.task is FootTask.HEEL_OFF
+    assert reference.toes == reference.pitch[:2]
+
+
+def test_a_foot_that_landed_carries_at_once():
+    landed = ROCKERS.over_heel(0.3)
+    assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)
