@@ -5,9 +5,13 @@ A parameter of a scenario is a dataclass field made by `quantity`; `check` walks
 """
 
 import dataclasses
+import difflib
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+
+GRAVITY = 9.81
+"""Acceleration of gravity, Drake's default [m/s2]."""
 
 UNIT_SLIPS = {
     "m": {100.0: "centimetres", 1000.0: "millimetres"},
@@ -26,6 +30,27 @@ class ParameterError(ValueError):
 def quantity(default: float, unit: str, low: float, high: float) -> Any:
     """Dataclass field for a number in [low, high], in the given unit ("" for a pure number)."""
     return dataclasses.field(default=default, metadata={"unit": unit, "low": low, "high": high})
+
+
+def choice(choices: Mapping[str, type[Any]], default: Any) -> Any:
+    """Dataclass field for one of several dataclasses, which a file names by its tag: `contact: point`.
+
+    Args:
+        choices: the dataclasses by tag.
+        default: an instance of one of them.
+    """
+    return dataclasses.field(default=default, metadata={"choices": choices})
+
+
+def tag_of(choices: Mapping[str, type[Any]], value: Any) -> str:
+    """The tag of a choice: the key of its type."""
+    return next(tag for tag, kind in choices.items() if type(value) is kind)
+
+
+def did_you_mean(text: str, choices: Sequence[str]) -> str:
+    """End of an error message that names the nearest of some choices; empty where none is near."""
+    near = difflib.get_close_matches(text, choices, n=1, cutoff=0.5)
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def check(parameters: Any, path: str = "") -> None:
@@ -63,6 +88,8 @@ def _numbers(parameters: Any, path: str) -> Iterator[tuple[str, float, Mapping[s
         name = f"{path}.{field.name}" if path else field.name
         if "unit" in field.metadata:
             yield name, value, field.metadata
+        elif "choices" in field.metadata:
+            yield from _numbers(value, f"{name}.{tag_of(field.metadata['choices'], value)}")
         elif dataclasses.is_dataclass(value):
             yield from _numbers(value, name)
         elif isinstance(value, tuple):
