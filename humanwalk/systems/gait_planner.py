@@ -1,8 +1,5 @@
 """LeafSystem: the step planner in time."""
 
-from dataclasses import dataclass
-from typing import Self
-
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
@@ -28,18 +25,6 @@ UNKNOWN: dict[Side, float] = dict.fromkeys(SIDES, 0.0)
 """Forces of the feet that nobody asks for: to sum up the contacts costs as much as the planner itself."""
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What a `GaitPlanner` remembers, and what it made of it; nothing before the simulation is initialised."""
-
-    state: PlannerState | None = None
-    reference: WalkingReference | None = None
-
-    def __deepcopy__(self, memo: object) -> Self:
-        """Itself: Drake copies abstract values often, and nothing in here ever changes."""
-        return self
-
-
 class GaitPlanner(LeafSystem):
     """Plans steps and balance, every control period.
 
@@ -52,7 +37,7 @@ class GaitPlanner(LeafSystem):
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
 
     Outputs (all show state, so reading them plans nothing):
-        plan: Plan, whose reference says what the body should do.
+        plan: WalkingReference, from initialization on.
         phase: (2) of the right and left foot: 0 at touchdown, 1 at the next; 0 in standing.
         contact_schedule: (2) 1 where the right, the left foot should be on the ground.
         balance: (9) zero-moment point, DCM, its reference and the foothold, each x, y in W [m]; then the `Phase`.
@@ -88,12 +73,13 @@ class GaitPlanner(LeafSystem):
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
-        self._memory = self.DeclareAbstractState(Value(Plan()))
+        self._memory = self.DeclareAbstractState(Value[object]())
+        self._reference = self.DeclareAbstractState(Value[object]())
         phase = self.DeclareDiscreteState(2)
         schedule = self.DeclareDiscreteState(np.ones(2))
         balance = self.DeclareDiscreteState(9)
         self._shown = (phase, schedule, balance)
-        self._plan_output = self.DeclareStateOutputPort("plan", self._memory)
+        self._plan_output = self.DeclareStateOutputPort("plan", self._reference)
         self._phase_output = self.DeclareStateOutputPort("phase", phase)
         self._schedule_output = self.DeclareStateOutputPort("contact_schedule", schedule)
         self._balance_output = self.DeclareStateOutputPort("balance", balance)
@@ -105,8 +91,7 @@ class GaitPlanner(LeafSystem):
         return self._remember(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
-        remembered = context.get_abstract_state(int(self._memory)).get_value().state
-        assert remembered is not None
+        remembered = context.get_abstract_state(int(self._memory)).get_value()
         forces = UNKNOWN
         if self._planner.listens(remembered):
             felt = self._foot_forces.Eval(context)
@@ -116,7 +101,8 @@ class GaitPlanner(LeafSystem):
         return self._remember(state, *self._planner.update(remembered, body, command))
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
-        state.get_mutable_abstract_state(int(self._memory)).set_value(Plan(planned, reference))
+        state.get_mutable_abstract_state(int(self._memory)).set_value(planned)
+        state.get_mutable_abstract_state(int(self._reference)).set_value(reference)
         shown = (self._phases(planned, reference), _schedule(reference), _balance(reference))
         for group, values in zip(self._shown, shown, strict=True):
             state.get_mutable_discrete_state(group).SetFromVector(values)

@@ -10,7 +10,6 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Leaf
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
-from humanwalk.systems.gait_planner import Plan
 from humanwalk.walking.walking_reference import WalkingReference
 
 STATUS = ("solved", "failures", "failures_in_a_row")
@@ -24,7 +23,7 @@ class WholeBodyController(LeafSystem):
 
     Inputs:
         state: plant state [q; v].
-        plan: Plan, see GaitPlanner.
+        plan: WalkingReference.
 
     Outputs (all show state, so reading them solves nothing):
         torque: (n) feed-forward for the actuators, in actuator order [N m].
@@ -65,7 +64,7 @@ class WholeBodyController(LeafSystem):
         self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        self._plan = self.DeclareAbstractInputPort("plan", Value(Plan()))
+        self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
         groups = [self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS))]
         self._groups = groups
         self._torque_output = self.DeclareStateOutputPort("torque", groups[0])
@@ -76,7 +75,7 @@ class WholeBodyController(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
 
     def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
-        reference = self._plan.Eval(context).reference
+        reference = self._plan.Eval(context)
         body = self._dynamics.at(self._state.Eval(context))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)

@@ -137,6 +137,10 @@ class PlannerState(NamedTuple):
     walked: int = 0
     swing: Swing | None = None
 
+    def __deepcopy__(self, memo: object) -> PlannerState:
+        """Return itself: Drake copies abstract values often, and the state is immutable."""
+        return self
+
     def ankle(self, side: Side) -> complex:
         """Where a foot stands."""
         return self.right if side == "Right" else self.left

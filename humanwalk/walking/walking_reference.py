@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Self
 
 from humanwalk.body import Side
 from humanwalk.walking.lipm import GRAVITY
@@ -113,6 +114,10 @@ class WalkingReference:
     chest_yaw: float
     shoulder_flexion: tuple[tuple[float, float], tuple[float, float]]
     foothold: complex
+
+    def __deepcopy__(self, memo: object) -> Self:
+        """Return itself: Drake copies abstract values often, and the reference is immutable."""
+        return self
 
     def foot(self, side: Side) -> FootReference:
         """One foot."""

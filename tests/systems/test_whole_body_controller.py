@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from humanwalk.control.whole_body_qp import WholeBodyParameters
-from humanwalk.systems.gait_planner import Plan
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.walking.command import Command
 from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
@@ -31,7 +30,7 @@ def standing(plant, joints):
 def plan(controller, standing):
     body = controller._dynamics.body_state(standing, 0.0, {"Right": 350.0, "Left": 350.0})
     planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD)
-    return Plan(*planner.update(planner.start(body), body, Command()))
+    return planner.update(planner.start(body), body, Command())[1]
 
 
 def updated(controller, context):
