@@ -1,42 +1,98 @@
-"""Files that are written whole or not at all."""
+"""Files of others, read within bounds, and files of ours, written whole or not at all."""
 
+import errno
 import os
+import stat
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
+
+TEMPORARY_NAME = 80
+"""Length of file name that a folder has to take [bytes]: a file that is being written has a longer name for a while."""
+
+
+def read_regular(path: Path, limit: int) -> bytes:
+    """Read a file that somebody else may have made: the one way to read any input file.
+
+    Opening neither waits for a FIFO nor touches a device, and no more is read than the file system declares.
+
+    Args:
+        path: the file, or a link to it.
+        limit: largest size [bytes].
+
+    Raises:
+        ParameterError: there is no such file, it is no regular one, it is larger, or it cannot be read.
+    """
+    with (
+        _as_parameter_error(path, "a readable file; check the path and its permissions"),
+        open(path, "rb", buffering=0, opener=_open_without_waiting) as file,
+    ):
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise ParameterError(f"{printable(path)}: a device or pipe; allowed: a regular file; give the path of one")
+        if status.st_size > limit:
+            raise ParameterError(
+                f"{printable(path)}: {status.st_size} bytes; allowed: up to {limit}; give a smaller file"
+            )
+        content = bytearray()
+        while len(content) < status.st_size and (more := file.read(status.st_size - len(content))):
+            content += more
+    return bytes(content)
+
+
+def read_text(path: Path, limit: int) -> str:
+    """Read a UTF-8 file, with or without a byte order mark; see `read_regular`."""
+    try:
+        return read_regular(path, limit).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ParameterError(
+            f"{printable(path)}: byte {error.start} is not UTF-8; allowed: text in UTF-8; save it as that"
+        ) from None
+
+
+def require_inside(folder: Path, path: Path) -> Path:
+    """Return `path`, which is used as a part of `folder`.
+
+    Raises:
+        ParameterError: it leads outside, by its name or by a symbolic link.
+    """
+    with _as_parameter_error(path, "a path inside the folder"):
+        inside = path.resolve().is_relative_to(folder.resolve())
+    if not inside:
+        raise ParameterError(
+            f"{printable(path)}: leads out of {printable(folder)}; allowed: files of that folder; remove the link"
+        )
+    return path
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a file beside `path`, then put it in place; a failure leaves what was there before.
 
     Args:
-        path: the file to appear.
+        path: the file to appear. A symbolic link of that name is replaced, not followed.
         write: called with the path of the file to fill, with the same suffix.
 
     Raises:
         ParameterError: the file cannot be written, with the system's reason.
     """
-    try:
+    with _writing(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
         os.close(handle)
-    except OSError as error:
-        raise ParameterError(_cannot_write(path, error)) from None
-    beside = Path(name)
-    try:
-        write(beside)
-        with beside.open("rb") as file:
-            os.fsync(file.fileno())
-        # mkstemp makes files private; a result is as readable as the umask lets any other file be.
-        umask = os.umask(0)
-        os.umask(umask)
-        beside.chmod(0o666 & ~umask)
-        beside.replace(path)
-    except OSError as error:
-        raise ParameterError(_cannot_write(path, error)) from None
-    finally:
-        beside.unlink(missing_ok=True)
+        beside = Path(name)
+        try:
+            write(beside)
+            with beside.open("rb") as file:
+                os.fsync(file.fileno())
+            # mkstemp makes files private; a result is as readable as the umask lets any other file be.
+            umask = os.umask(0)
+            os.umask(umask)
+            beside.chmod(0o666 & ~umask)
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -48,19 +104,35 @@ def make_folder(path: Path) -> list[Path]:
     """Make a folder and its parents, unless it is there already, and return those that were made, innermost first.
 
     Raises:
-        ParameterError: it cannot be made or written into.
+        ParameterError: it cannot be made or written into, or its name is no text that other programs can read.
     """
-    made = [folder for folder in (path, *path.parents) if not folder.exists()]
-    try:
+    with _writing(path):
+        os.fspath(path).encode()
+        made = [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=path):
+        with tempfile.NamedTemporaryFile(dir=path, prefix="." + "x" * TEMPORARY_NAME):
             pass
-    except OSError as error:
-        raise ParameterError(_cannot_write(path, error)) from None
     return made
 
 
-def _cannot_write(path: Path, error: OSError) -> str:
-    return (
-        f"{path}: {error.strerror or error}; allowed: a folder that you may write to, with room; choose another with -o"
-    )
+def _open_without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NONBLOCK)
+
+
+@contextmanager
+def _as_parameter_error(path: Path, allowed: str) -> Iterator[None]:
+    """Turn an error of the file system, or a name that no file can have, into one line."""
+    try:
+        if "\0" in str(path):
+            raise OSError(errno.EINVAL, "a NUL character in a name")
+        yield
+    except OSError as error:
+        raise ParameterError(f"{printable(path)}: {error.strerror or error}; allowed: {allowed}") from None
+    except UnicodeEncodeError:
+        raise ParameterError(f"{printable(path)}: not UTF-8 text; allowed: {allowed}") from None
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    with _as_parameter_error(path, "a folder that you may write to, with room; choose another with -o"):
+        yield

@@ -23,8 +23,31 @@ UNIT_SLIPS = {
 """Factors by which people slip: a value given in the named unit is that many times too large."""
 
 
+MESSAGE_LENGTH = 4000
+"""Longest error message [characters]; the longest list of allowed fields fits."""
+
+
 class ParameterError(ValueError):
-    """A parameter's value cannot be used; the message is one line: field, value, allowed range, mend."""
+    """An input that cannot be used. The message is one printable line: field, value, allowed range, fix."""
+
+    def __init__(self, message: object) -> None:
+        super().__init__(printable(message, MESSAGE_LENGTH))
+
+
+def printable(text: object, limit: int = 120) -> str:
+    """`str(text)` on one line, safe for a terminal, at most `limit` characters long.
+
+    Names of files, columns and scenarios come from others: control characters, line ends, bidirectional marks and
+    bytes that are no text are escaped, and the middle of a long text is left out.
+    """
+    raw = str(text)
+    # Only the ends can be shown: a text of any length takes no longer.
+    raw = raw if len(raw) <= 2 * limit else raw[:limit] + raw[-limit:]
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in raw)
+    if len(shown) <= limit and len(raw) == len(str(text)):
+        return shown
+    tail = (limit - 3) // 2
+    return shown[: limit - 3 - tail] + "..." + shown[-tail:]
 
 
 def quantity(default: float, unit: str, low: float, high: float) -> Any:

@@ -6,8 +6,10 @@ import stat
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from humanwalk.files import make_folder, write_text, write_whole
+from humanwalk.files import make_folder, read_regular, read_text, require_inside, write_text, write_whole
 from humanwalk.quantity import ParameterError
 
 
@@ -134,6 +136,94 @@ def test_folder_that_takes_no_files_is_told(tmp_path, monkeypatch):
     def refuse(*args, **kwargs):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
-    monkeypatch.setattr("tempfile.TemporaryFile", refuse)
+    monkeypatch.setattr("tempfile.NamedTemporaryFile", refuse)
     with pytest.raises(ParameterError, match="Permission denied"):
         make_folder(tmp_path)
+
+
+# Reading.
+
+
+def refusal(path, limit=100) -> str:
+    with pytest.raises(ParameterError) as raised:
+        read_regular(path, limit)
+    return one_line(raised)
+
+
+@given(content=st.binary(max_size=200))
+def test_a_file_up_to_the_limit_is_read_and_a_larger_one_refused(tmp_path_factory, content):
+    path = tmp_path_factory.mktemp("read") / "file"
+    path.write_bytes(content)
+    assert read_regular(path, len(content)) == content
+    if content:
+        assert f"allowed: up to {len(content) - 1}" in refusal(path, len(content) - 1)
+
+
+def test_fifo_is_refused_without_waiting_for_a_writer(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    assert "regular file" in refusal(tmp_path / "fifo")
+
+
+@pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/stdin"])
+def test_device_is_refused(device):
+    assert "regular file" in refusal(Path(device))
+
+
+def test_file_of_the_kernel_that_declares_no_size_is_empty():
+    assert read_regular(Path("/proc/self/status"), 100) == b""
+
+
+def test_folder_and_missing_file_are_refused(tmp_path):
+    assert "Is a directory" in refusal(tmp_path)
+    assert "No such file" in refusal(tmp_path / "none")
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "a\0b", "\udcff\n"], ids=["too long", "NUL", "not UTF-8"])
+def test_name_that_no_file_has_is_one_line(tmp_path, name):
+    for use in (lambda: read_regular(tmp_path / name, 1), lambda: make_folder(tmp_path / name / "run")):
+        with pytest.raises(ParameterError) as raised:
+            use()
+        assert one_line(raised).isprintable()
+
+
+def test_folder_so_deep_that_its_files_have_no_name_is_refused(tmp_path):
+    """The folder itself can be made; files in it could not be."""
+    deep = tmp_path
+    while len(str(deep)) < 4096 - 110:
+        deep = deep / ("x" * min(100, 4096 - 60 - len(str(deep))))
+    with pytest.raises(ParameterError, match="File name too long"):
+        make_folder(deep / ("y" * max(1, 4095 - 40 - len(str(deep)))))
+
+
+def test_byte_order_mark_is_no_text(tmp_path):
+    (tmp_path / "a").write_bytes(b"\xef\xbb\xbf{}")
+    assert read_text(tmp_path / "a", 10) == "{}"
+
+
+def test_bytes_that_are_no_text_are_refused_by_their_place(tmp_path):
+    (tmp_path / "a").write_bytes(b"ab\xff")
+    with pytest.raises(ParameterError, match="byte 2 is not UTF-8"):
+        read_text(tmp_path / "a", 10)
+
+
+# Links.
+
+
+def test_what_leads_out_of_a_folder_is_refused(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "plots").symlink_to(tmp_path)
+    (folder / "own").symlink_to(folder / "other")
+    for path in (folder / "plots", folder / "plots" / "a.png", folder / ".." / "other"):
+        with pytest.raises(ParameterError, match="leads out of"):
+            require_inside(folder, path)
+    for path in (folder / "plots.d" / "a.png", folder / "own"):
+        assert require_inside(folder, path) == path
+
+
+def test_link_in_place_of_a_result_is_replaced_and_not_followed(tmp_path):
+    (tmp_path / "mine").write_text("mine")
+    (tmp_path / "result").symlink_to(tmp_path / "mine")
+    write_text(tmp_path / "result", "new")
+    assert (tmp_path / "mine").read_text() == "mine"
+    assert (tmp_path / "result").read_text() == "new"

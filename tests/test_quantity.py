@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.quantity import UNIT_SLIPS, ParameterError, check, quantity, require_in_range
+from humanwalk.quantity import UNIT_SLIPS, ParameterError, check, printable, quantity, require_in_range
 
 
 @dataclass(frozen=True)
@@ -99,3 +99,27 @@ def test_plain_mappings_and_texts_are_no_quantities():
 
 def test_a_parameter_error_is_a_value_error():
     assert issubclass(ParameterError, ValueError)
+
+
+@given(st.text(alphabet=st.characters(codec=None), max_size=300), st.integers(20, 150))
+def test_any_text_is_printed_on_one_line_of_limited_length_without_control_characters(text, limit):
+    shown = printable(text, limit)
+    assert shown.isprintable()
+    assert len(shown) <= limit
+
+
+@given(st.text(alphabet=st.characters(categories=["L", "N", "P", "S"]), max_size=50))
+def test_text_that_fits_is_shown_unchanged(text):
+    assert printable(text, 50) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"), [("a\x1b[2Jb", r"a\x1b[2Jb"), ("a\nb", r"a\nb"), ("\u202eb", r"\u202eb"), ("\udcff", r"\udcff")]
+)
+def test_what_a_terminal_would_act_on_is_escaped(text, shown):
+    assert printable(text) == shown
+    assert str(ParameterError(text)) == shown
+
+
+def test_long_text_keeps_its_ends():
+    assert printable("begin" + "x" * 10**6 + "end", 20) == "beginxxxx...xxxxxend"
