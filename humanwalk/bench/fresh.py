@@ -55,7 +55,6 @@ def measure_repeat(scenario: Scenario, began: float) -> dict[str, Any]:
         "bare": BarePlant(scenario, record).advance,
     }
     turns = in_turns(advance, scenario.duration)
-    # What is derived from the record afterwards is a cost of the record, too.
     turns["full"].append(full.make_table())
     return {
         "startup_s": startup,

@@ -18,7 +18,6 @@ from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.command_source import CommandSource
 from humanwalk.systems.gait_planner import GaitPlanner
-from humanwalk.systems.held_actuation import HeldActuation
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
 from humanwalk.systems.whole_body_controller import WholeBodyController
@@ -33,15 +32,13 @@ TASK_GAINS = 3
 def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, held_actuation (with the
-    semi-implicit law), pushes (a PushSource where the scenario has any, or zero), body_observer,
-    foot_force_observer, or foot_contact with `contact: asperity`.
+    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes (a PushSource where the
+    scenario has any, or zero), body_observer, foot_force_observer, or foot_contact with `contact: asperity`.
 
     Exported outputs, joints in actuator order, named as those of `make_walker`:
         state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
-        net_actuation (42), phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
+        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
     and its own:
-        feedforward (42), sample (84), sample_time (1): of the WholeBodyController, for the actuators.
         command (3): see CommandSource.
         balance (9): see GaitPlanner.
         qp_status (3): see WholeBodyController.
@@ -97,16 +94,8 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(controller.GetOutputPort("sample_time"), bank.GetInputPort("sample_time"))
     builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
     builder.Connect(plant.get_net_actuation_output_port(), bank.GetInputPort("net_actuation"))
-    if law == "semi_implicit":
-        # The bank's own law, without Python; the bank is asked for what it tells of it.
-        held = builder.AddNamedSystem("held_actuation", HeldActuation(plant, human.kp, human.kd, human.effort_limits))
-        builder.Connect(controller.GetOutputPort("torque"), held.GetInputPort("feedforward"))
-        builder.Connect(controller.GetOutputPort("desired_state"), held.GetInputPort("desired_state"))
-        builder.Connect(controller.GetOutputPort("sample_time"), held.GetInputPort("sample_time"))
-        builder.Connect(plant.get_state_output_port(), held.GetInputPort("state"))
-        builder.Connect(held.GetOutputPort("actuation"), plant.get_actuation_input_port())
-    else:
-        builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
+    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
+    if law == "implicit":
         builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(human.instance))
     push, spatial_forces = _add_pushes(builder, scenario, plant)
     connect_spatial_forces(builder, human, (*feet.spatial_forces, *spatial_forces))
@@ -117,10 +106,6 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.GetOutputPort("torque"), "torque"),
         (bank.GetOutputPort("saturated"), "saturated"),
-        (plant.get_net_actuation_output_port(), "net_actuation"),
-        (controller.GetOutputPort("torque"), "feedforward"),
-        (controller.GetOutputPort("desired_state"), "sample"),
-        (controller.GetOutputPort("sample_time"), "sample_time"),
         (bank.GetOutputPort("held_desired_state"), "desired_state"),
         (planner.GetOutputPort("phase"), "phase"),
         (planner.GetOutputPort("contact_schedule"), "contact_schedule"),

@@ -12,6 +12,7 @@ from humanwalk.body.contact import SolePatch
 from humanwalk.choices.world import HumanPlant
 from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.contact_step import body_jacobians, largest_contact_step, patch_impedance
+from humanwalk.control.pd_laws import PD_LAWS
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
@@ -90,12 +91,7 @@ def connect_spatial_forces(builder: DiagramBuilder, human: HumanPlant, ports: Se
 def _joint_law(scenario: Scenario, human: HumanPlant) -> Callable[[float], tuple[Array, Array]]:
     """What a step h of the actuators' law adds to the diagonal of the mass matrix, and what it takes explicitly."""
     kp, kd = _in_velocities(human, human.kp), _in_velocities(human, human.kd)
-    none = np.zeros_like(kd)
-    return {
-        "implicit": lambda h: (h * kd + h * h * kp, none),
-        "semi_implicit": lambda h: (h * kd, none),
-        "explicit": lambda h: (none, h * kd),
-    }[scenario.actuators.law]
+    return lambda h: PD_LAWS[scenario.actuators.law].impedance(h, kp, kd)
 
 
 def _in_velocities(human: HumanPlant, gains: Array) -> Array:

@@ -24,10 +24,10 @@ from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.contact.leg_contact import add_leg_capsules, let_legs_touch
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.control.pd_control import joint_gains
+from humanwalk.control.pd_laws import install_gains
 from humanwalk.control.whole_body_qp import is_foot_posture
 from humanwalk.numerics import Array
 from humanwalk.scenario import BalancedWalkParameters, Contact, Scenario
-from humanwalk.systems.pd_actuator_bank import install_gains
 from humanwalk.terrain.floor import add_level_ground
 
 CONTACT_MODELS = {

@@ -1,76 +1,31 @@
 """Cubic Hermite interpolation of a state between two samples."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
-
 import numpy as np
 
 from humanwalk.numerics import Array
 
-ROWS = 6
-"""Number of rows of a piece."""
 
+def hermite(t: float, t0: float, x0: Array, t1: float, x1: Array) -> Array:
+    """Interpolate a state between two samples, with a first-order hold before the first and after the second.
 
-@dataclass(frozen=True)
-class HermitePiece:
-    """The cubic that has the positions and the velocities of two samples; outside them it goes on straight.
+    The position is the cubic that has the positions and the velocities of both samples; the velocity is its
+    derivative.
 
-    Its coefficients are worked out once for the many times at which it is asked.
+    Args:
+        t: time of the result [s].
+        t0, t1: times of the samples [s]; with t1 <= t0 only the second sample is used.
+        x0, x1: samples [q; v], shape (2n,) each.
 
-    Attributes:
-        t0, t1: times of the samples [s], t0 <= t1.
-        rows: coefficients, shape (ROWS, m): the value is their sum, weighted by `weights`. Only the first is of a
-            constant.
+    Returns:
+        [q; v] at t, shape (2n,).
     """
-
-    t0: float
-    t1: float
-    rows: Array
-
-    @staticmethod
-    def between(t0: float, x0: Array, t1: float, x1: Array) -> "HermitePiece":
-        """The piece between two samples [q; v], shape (2n,) each, whose value is such a state.
-
-        With t1 <= t0 only the second counts.
-        """
-        if t1 <= t0:
-            t0, x0 = t1, x1
-        samples = np.concatenate((x0, x1))
-        return HermitePiece(t0, t1, basis(t1 - t0).dot(samples.reshape(4, -1)).reshape(ROWS, -1))
-
-    def mapped(self, linear: Callable[[Array], Array], constant: Array | None = None) -> "HermitePiece":
-        """The piece of a function of the value: linear, which is given many values in rows, plus a constant (m,)."""
-        rows = linear(self.rows)
-        if constant is not None:
-            rows[0] += constant
-        return HermitePiece(self.t0, self.t1, rows)
-
-    def at(self, t: float) -> Array:
-        """Value at t [s], shape (m,); of a state its v is the time derivative of its q."""
-        # A third of the time of the operator @.
-        value: Array = np.array(weights(t, self.t0, self.t1)).dot(self.rows)
-        return value
-
-
-def weights(
-    t: Any, t0: Any, t1: Any, smaller: Callable[[Any, Any], Any] = min, larger: Callable[[Any, Any], Any] = max
-) -> tuple[Any, ...]:
-    """Weights of a piece's rows at t [s]: powers of the time since t0 up to t1, then times before t0 and after t1.
-
-    Of numbers, or of Drake's symbolic expressions with its min and max.
-    """
-    s = smaller(larger(t, t0), t1) - t0
-    return 1.0, s, s * s, s * s * s, smaller(t - t0, 0.0), larger(t - t1, 0.0)
-
-
-@lru_cache(maxsize=64)
-def basis(h: float) -> Array:
-    """The matrix that takes q0, v0, q1, v1 of samples h [s] apart to a piece's rows, of q and v by turns; (12, 4)."""
-    q0, v0, q1, v1 = np.eye(4)
-    still = bend = twist = np.zeros(4)
-    if h > 0.0:
-        chord = (q1 - q0) / h
-        bend, twist = (3.0 * chord - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * chord) / (h * h)
-    return np.array((q0, v0, v0, 2.0 * bend, bend, 3.0 * twist, twist, still, v0, still, v1, still))
+    n = x1.size // 2
+    q0, v0, q1, v1 = x0[:n], x0[n:], x1[:n], x1[n:]
+    if t1 <= t0:
+        return np.concatenate((q1 + (t - t1) * v1, v1))
+    h = t1 - t0
+    inside = min(max(t, t0), t1)
+    s = (inside - t0) / h
+    q = (1 + 2 * s) * (1 - s) ** 2 * q0 + s**2 * (3 - 2 * s) * q1 + h * s * (1 - s) * ((1 - s) * v0 - s * v1)
+    v = 6 * s * (1 - s) / h * (q1 - q0) + (1 - s) * (1 - 3 * s) * v0 + s * (3 * s - 2) * v1
+    return np.concatenate((q + (t - inside) * v, v))

@@ -1,4 +1,4 @@
-"""The PD law of every joint (thesis Eq 4-23 with the damping's sign mended, E10), its gains and its stability."""
+"""The PD law of every joint (thesis Eq 4-23 with the sign of the damping corrected, E10), and its gains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,7 +7,6 @@ from typing import Literal
 import numpy as np
 
 from humanwalk.numerics import Array
-from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import ParameterError, quantity
 
 THESIS_ANKLE = (10000.0, 10.0)
@@ -31,15 +30,7 @@ STIFFNESS_BY_JOINT_KIND = {
 
 
 PdLaw = Literal["implicit", "semi_implicit", "explicit"]
-"""Three ways to the same torque.
-
-implicit: the plant's own PD through its desired_state port: stable at any step, at the price of one solver constraint
-    for each joint.
-semi_implicit: kd as the plant's joint damping, which its solver takes implicitly for nothing, and the rest as torque
-    through the actuation port: a third quicker, stable at steps of several ms. A joint at its effort limit feels
-    up to kd times a step's change of velocity more.
-explicit: everything as torque: with the thesis' gains stable to a tenth of a millisecond only.
-"""
+"""Discretization of the law, see `humanwalk.control.pd_laws`."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +65,7 @@ class ActuatorParameters:
 
 
 def pd_torque(q: Array, v: Array, q_desired: Array, v_desired: Array, kp: Array, kd: Array) -> Array:
-    """tau = kp (q_d - q) + kd (v_d - v) [N m], element-wise (Eq 4-23 mended as in E10)."""
+    """tau = kp (q_d - q) + kd (v_d - v) [N m], element-wise (Eq 4-23 corrected as in E10)."""
     tau: Array = kp * (q_desired - q) + kd * (v_desired - v)
     return tau
 
@@ -124,45 +115,3 @@ def preset_stiffness(joint_name: str) -> float:
         if word in joint_name:
             return kp
     raise ParameterError(f"{joint_name}: no preset stiffness; give its gains in actuators.gains")
-
-
-def largest_explicit_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> float:
-    """Largest step [s] at which the explicit law is stable, linearised at rest.
-
-    The plant's discrete update is v' = v + h M^-1 tau(q, v), q' = q + h v'.
-
-    Args:
-        M: mass matrix, shape (m, m), floating base first; its last n rows are the joints.
-        kp, kd: gains of the n joints.
-        upper: step beyond which nothing is looked for [s].
-    """
-    n, m = kp.size, M.shape[0]
-    inverse = np.linalg.inv(M)[:, m - n :]
-    K, D = inverse[m - n :] * kp, inverse[m - n :] * kd
-    eye = np.eye(n)
-    return largest_stable_step(lambda h: np.block([[eye - h * h * K, h * (eye - h * D)], [-h * K, eye - h * D]]), upper)
-
-
-def largest_semi_implicit_step(M: Array, kp: Array, kd: Array, upper: float = 0.1) -> float:
-    """Largest step [s] at which explicit stiffness with implicit damping is stable, linearised at rest.
-
-    (M + h kd) v' = M v - h kp q, q' = q + h v'.
-
-    Args:
-        M: mass matrix, shape (m, m), floating base first; its last n rows are the joints.
-        kp, kd: gains of the n joints.
-        upper: step beyond which nothing is looked for [s].
-    """
-    n, m = kp.size, M.shape[0]
-    eye = np.eye(n)
-
-    def update(h: float) -> Array:
-        damped = M.copy()
-        damped[range(m - n, m), range(m - n, m)] += h * kd
-        solved = np.linalg.inv(damped)
-        # The base follows without a force of its own, so only the joints' rows feed back; its momentum stays zero.
-        v_of_q = -h * solved[m - n :, m - n :] * kp
-        v_of_v = eye - h * solved[m - n :, m - n :] * kd
-        return np.block([[eye + h * v_of_q, h * v_of_v], [v_of_q, v_of_v]])
-
-    return largest_stable_step(update, upper)

@@ -20,8 +20,6 @@ from humanwalk.systems.balance_support import BalanceSupport
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.gait_spline_source import GaitSplineSource
-from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
-from humanwalk.systems.linear_law import LinearLaw
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
@@ -31,8 +29,7 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, gait, arms, inverse_kinematics, actuators, body_observer,
-    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance; law where
-    the actuators' law is linear (semi-implicit without limits). A
+    foot_force_observer and, where the scenario enables them, support, foot_force_balance, upper_body_balance. A
     scenario that follows a recording has recording instead of gait, arms and inverse_kinematics; one with
     `contact: asperity` has foot_contact instead of foot_force_observer.
 
@@ -40,12 +37,10 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         state (97): plant state [q; v].
         query_object: SceneGraph's, for a visualiser.
         contact_results: the plant's.
-        net_actuation (42): the plant's [N m].
         torque (42): what every joint feels of its actuator [N m].
         saturated (42): 1 where an actuator is at its limit.
         desired_state (84): desired joint angles [rad], rates [rad/s].
-        ik_status (6), sample (84), sample_time (1), previous_sample (84), previous_sample_time (1): see
-            InverseKinematicsSolver; not with a recording.
+        ik_status (6): see InverseKinematicsSolver; not with a recording.
         pelvis_reference (13): where the pelvis should be in W: quaternion, position, angular velocity, velocity.
         phase (2), contact_schedule (2): see GaitSplineSource; not with a recording.
         soles (6), com (6): see BodyObserver.
@@ -82,16 +77,7 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
     builder.Connect(plant.get_net_actuation_output_port(), bank.GetInputPort("net_actuation"))
     builder.ExportInput(bank.GetInputPort("feedforward"), "feedforward")
-    actuation = bank.GetOutputPort("actuation")
-    if bank.is_linear and reference.samples is not None:
-        law = builder.AddNamedSystem("law", LinearLaw(plant, human.kp, human.kd, scenario.simulation.control_period))
-        builder.Connect(reference.samples.GetOutputPort("previous_state"), law.GetInputPort("previous_state"))
-        builder.Connect(reference.samples.GetOutputPort("previous_time"), law.GetInputPort("previous_time"))
-        builder.Connect(reference.samples.GetOutputPort("desired_state"), law.GetInputPort("desired_state"))
-        builder.Connect(plant.get_state_output_port(), law.GetInputPort("state"))
-        builder.ConnectInput("feedforward", law.GetInputPort("feedforward"))
-        actuation = law.GetOutputPort("actuation")
-    builder.Connect(actuation, plant.get_actuation_input_port())
+    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
     if scenario.actuators.law == "implicit":
         builder.Connect(
             bank.GetOutputPort("plant_desired_state"),
@@ -116,7 +102,6 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         (plant.get_contact_results_output_port(), "contact_results"),
         (bank.GetOutputPort("torque"), "torque"),
         (bank.GetOutputPort("saturated"), "saturated"),
-        (plant.get_net_actuation_output_port(), "net_actuation"),
         (bank.GetOutputPort("held_desired_state"), "desired_state"),
         (reference.pelvis, "pelvis_reference"),
         *((port, name) for name, port in reference.exports.items()),
@@ -133,11 +118,10 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
 
 @dataclass(frozen=True)
 class _Reference:
-    """What the walker is to do: ports beside the joints' desired state, and what makes samples of that."""
+    """Ports of the walking reference besides the joints' desired state."""
 
     pelvis: OutputPort
     exports: dict[str, OutputPort]
-    samples: InverseKinematicsSolver | None = None
 
 
 def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
@@ -190,15 +174,9 @@ def _add_gait(
         exports["alpha"] = level_2.GetOutputPort("alpha")
         posture = level_2.GetOutputPort("balanced_posture")
     builder.Connect(posture, solver.GetInputPort("posture"))
-    for name, sample, taken in (
-        ("sample", solver.GetOutputPort("desired_state"), bank.GetInputPort("desired_state")),
-        ("sample_time", solver.GetOutputPort("sample_time"), bank.GetInputPort("sample_time")),
-        ("previous_sample", solver.GetOutputPort("previous_state"), bank.GetInputPort("previous_state")),
-        ("previous_sample_time", solver.GetOutputPort("previous_time"), bank.GetInputPort("previous_time")),
-    ):
-        builder.Connect(sample, taken)
-        exports[name] = sample
-    return _Reference(gait.GetOutputPort("pelvis_reference"), exports, solver)
+    for port in ("desired_state", "sample_time", "previous_state", "previous_time"):
+        builder.Connect(solver.GetOutputPort(port), bank.GetInputPort(port))
+    return _Reference(gait.GetOutputPort("pelvis_reference"), exports)
 
 
 def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:

@@ -14,7 +14,6 @@ from humanwalk.body import SIDES
 from humanwalk.body.joint_map import JointMap
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
-from humanwalk.run.derived import WHEN, Derived, derived_signals
 
 TIME = "time_s"
 
@@ -92,28 +91,22 @@ class Recorder:
     Attributes:
         ports: the exported ports that are logged, and their sizes.
         sink: the log sink of all of these, one after the other: one event a sample, not one a port.
-        derived: what follows from these.
-        columns: names of the columns of every recorded port, logged and derived, in the order of the table.
+        columns: names of the columns of every port, in the order of the table.
     """
 
     ports: dict[str, int]
     sink: VectorLogSink
-    derived: list[Derived]
     columns: dict[str, list[str]]
 
     @staticmethod
     def add_to(builder: DiagramBuilder, walker: Diagram, joints: JointMap, period: float) -> "Recorder":
         """Record every port of the walker that `signal_columns` knows, sampled every `period` seconds."""
         columns = {port: names for port, names in signal_columns(joints).items() if walker.HasOutputPort(port)}
-        derived = derived_signals(walker)
-        known = {WHEN, *(port for one in derived for port in one.ports)}
-        asked = [port for port in columns if port not in known]
-        needed = [port for one in derived for port in one.needs if port not in known]
-        ports = {port: walker.GetOutputPort(port).size() for port in dict.fromkeys(asked + needed)}
+        ports = {port: len(names) for port, names in columns.items()}
         every = builder.AddSystem(Multiplexer(list(ports.values())))
         for place, port in enumerate(ports):
             builder.Connect(walker.GetOutputPort(port), every.get_input_port(place))
-        return Recorder(ports, LogVectorOutput(every.get_output_port(), builder, period), derived, columns)
+        return Recorder(ports, LogVectorOutput(every.get_output_port(), builder, period), columns)
 
     def table(self, context: Context) -> pa.Table:
         """Everything recorded so far; also after a simulation that ended early.
@@ -128,9 +121,7 @@ class Recorder:
             )
         time: Array = log.sample_times().copy()
         ends = np.cumsum(list(self.ports.values()))
-        record = dict(zip(self.ports, np.split(log.data().T.copy(), ends[:-1], axis=1), strict=True)) | {WHEN: time}
-        for one in self.derived:
-            record |= zip(one.ports, one.calculate(*(record[need] for need in one.needs)), strict=True)
+        record = dict(zip(self.ports, np.split(log.data().T.copy(), ends[:-1], axis=1), strict=True))
         data: dict[str, Array] = {TIME: time}
         for port, names in self.columns.items():
             data |= zip(names, np.ascontiguousarray(record[port].T), strict=True)

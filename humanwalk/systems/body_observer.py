@@ -1,7 +1,5 @@
 """LeafSystem: where the feet and the centre of mass are."""
 
-from contextlib import suppress
-
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
@@ -38,15 +36,6 @@ class BodyObserver(LeafSystem):
         needs = {self._motion.ticket()}
         self._soles_output = self.DeclareVectorOutputPort("soles", 6, self._calc_soles, prerequisites_of_calc=needs)
         self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
-
-    def motions(self, states: Array) -> tuple[Array, Array]:
-        """Both outputs at many states, a row each; not a number where the body cannot be in the state."""
-        soles, com = np.full((len(states), 6), np.nan), np.full((len(states), 6), np.nan)
-        for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
-            # What Drake says of a state that has run away; what was recorded before it is kept.
-            with suppress(RuntimeError, SystemExit):
-                soles[row], com[row] = self._motion_at(states[row])
-        return soles, com
 
     def _motion_at(self, state: Array) -> tuple[Array, Array]:
         plant, body = self._plant, self._plant_context

@@ -10,8 +10,8 @@ from humanwalk.scenario import load_scenario, parse_scenario
 from humanwalk.systems.push_source import PushSource
 
 PORTS = [
-    *("state", "query_object", "contact_results", "torque", "saturated", "net_actuation", "feedforward", "sample"),
-    *("sample_time", "desired_state", "phase"),
+    *("state", "query_object", "contact_results", "torque", "saturated"),
+    *("desired_state", "phase"),
     *("contact_schedule", "soles", "com", "foot_forces", "friction_use", "command", "balance", "qp_status", "push"),
 ]
 

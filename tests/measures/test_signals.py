@@ -5,13 +5,12 @@ import re
 import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder, EventStatus
+from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.measures.signals import TIME, Recorder, matrix, signal_columns
-from humanwalk.run.derived import WHEN, derived_signals
 from humanwalk.scenario import load_scenario
 
 PERIOD = 0.01
@@ -57,50 +56,13 @@ def test_a_column_for_every_element_of_every_port(recorded, joints):
     assert table.column_names == [TIME, *(name for names in columns.values() for name in names)]
 
 
-def test_every_vector_port_of_either_walker_is_recorded_or_others_follow_from_it(recorded, joints):
+def test_every_vector_port_of_either_walker_is_recorded(recorded, joints):
     walkers = recorded[0], make_diagram(load_scenario("stand"))
     ports = [walker.get_output_port(i) for walker in walkers for i in range(walker.num_output_ports())]
-    needed = {need for walker in walkers for one in derived_signals(walker) for need in one.needs} - {WHEN}
-    assert {port.get_name() for port in ports if port.size()} == set(signal_columns(joints)) | needed
+    assert {port.get_name() for port in ports if port.size()} == set(signal_columns(joints))
     for port in ports:
-        if port.size() and port.get_name() in signal_columns(joints):
+        if port.size():
             assert port.size() == len(signal_columns(joints)[port.get_name()])
-
-
-LIMITED = {"actuators.effort_limits": "human"}
-
-
-@pytest.mark.parametrize(
-    ("name", "overrides"),
-    [
-        ("thesis", LEVELS),
-        ("thesis", LIMITED),
-        ("comfortable", {}),
-        ("walk", {}),
-        ("walk", {"actuators.law": "implicit"}),
-        ("walk", {"contact": "asperity"}),
-    ],
-)
-def test_what_is_derived_afterwards_is_what_the_ports_show(name, overrides):
-    """To the last bit, at times on and off the control period and while the joints move."""
-    builder = DiagramBuilder()
-    walker = builder.AddNamedSystem("walker", make_diagram(load_scenario(name, overrides)))
-    recorder = Recorder.add_to(builder, walker, JointMap.of(walker.GetSubsystemByName("plant")), 0.003)
-    simulator = Simulator(builder.Build())
-    shown = {port: [] for one in recorder.derived for port in one.ports}
-    assert shown
-
-    def look(root_context):
-        context = walker.GetMyContextFromRoot(root_context)
-        for port, values in shown.items():
-            values.append(walker.GetOutputPort(port).Eval(context))
-        return EventStatus.DidNothing()
-
-    simulator.set_monitor(look)
-    simulator.AdvanceTo(0.03)
-    table = recorder.table(simulator.get_context())
-    for port, values in shown.items():
-        np.testing.assert_array_equal(matrix(table, recorder.columns[port]), values[::3], err_msg=port)
 
 
 def test_a_row_every_period(recorded):

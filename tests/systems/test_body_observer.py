@@ -80,14 +80,3 @@ def test_a_body_that_is_carried_elsewhere_carries_its_points(observed, plant, rn
     soles_there, com_there = observed(np.concatenate((moved, v)))
     np.testing.assert_allclose(soles_there, soles + np.tile(shift, 2), atol=1e-9)
     np.testing.assert_allclose(com_there, com + np.concatenate((shift, np.zeros(3))), atol=1e-9)
-
-
-@pytest.mark.parametrize("bad", [np.full(97, np.nan), np.zeros(97)])
-def test_many_states_are_seen_as_one_by_one_and_impossible_ones_are_no_numbers(observer, observed, plant, bad):
-    """Not a number, and a quaternion that is none."""
-    good = np.concatenate(random_state(plant, np.random.default_rng(1)))
-    soles, com = observer.motions(np.array([good, bad, good]))
-    for row in (0, 2):
-        np.testing.assert_array_equal(soles[row], observed(good)[0])
-        np.testing.assert_array_equal(com[row], observed(good)[1])
-    assert not np.isfinite(np.concatenate((soles[1], com[1]))).all()
