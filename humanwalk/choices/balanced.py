@@ -21,6 +21,7 @@ from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 from humanwalk.systems.push_source import PushSource
 from humanwalk.systems.whole_body_controller import WholeBodyController
+from humanwalk.terrain import Plane
 
 START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
@@ -71,7 +72,7 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     walk = scenario.balanced
     command = builder.AddNamedSystem("command", CommandSource(walk.command))
     planner = builder.AddNamedSystem(
-        "planner", GaitPlanner(model, walk.planner, scenario.gait.first_swing, walk.control_period)
+        "planner", GaitPlanner(model, walk.planner, scenario.gait.first_swing, walk.control_period, Plane())
     )
     posture = {f"{side}ArmElbowMotion": scenario.gait.arms.elbow_flexion for side in SIDES}
     tasks = noisy_tasks(walk.whole_body, scenario.start.gain_noise, np.random.default_rng((scenario.seed, TASK_GAINS)))

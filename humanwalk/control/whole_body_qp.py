@@ -296,7 +296,7 @@ class WholeBodyQp:
         p, tasks = self.parameters, _Tasks(body)
         x, y, z = body.com.tolist()
         height, rate, lift = reference.com_height
-        over_ground = com_acceleration(complex(x, y), reference.zmp, z, lift)
+        over_ground = com_acceleration(complex(x, y), reference.zmp, z - reference.ground_height, lift)
         gains, com = p.com_height, 6 * len(body.bodies)
         up = lift + gains.stiffness * (height - z) + gains.damping * (rate - tasks.velocity[-1])
         tasks.add((com, com + 1), (over_ground.real, over_ground.imag), p.com_weight)

@@ -21,6 +21,7 @@ from scipy.interpolate import CubicHermiteSpline
 from humanwalk.gait.arc_length import ArcLength
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics import Array
+from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import ParameterError, check, quantity
 
 SwingLaw = Literal["thesis", "smooth"]
@@ -175,20 +176,6 @@ def swing_hump(tau: float | Array) -> tuple[float | Array, ...]:
     """64 (tau - tau^2)^3 and its derivative: 0 to 1 to 0, at rest with no acceleration at both ends."""
     product = tau * (1.0 - tau)
     return 64.0 * product**3, 192.0 * product**2 * (1.0 - 2.0 * tau)
-
-
-@overload
-def quintic_blend(tau: float) -> tuple[float, float, float]: ...
-@overload
-def quintic_blend(tau: Array) -> tuple[Array, Array, Array]: ...
-def quintic_blend(tau: float | Array) -> tuple[float | Array, ...]:
-    """10 tau^3 - 15 tau^4 + 6 tau^5 and its first two derivatives: 0 to 1, at rest at both ends."""
-    rest = 1.0 - tau
-    return (
-        tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2),
-        30.0 * (tau * rest) ** 2,
-        60.0 * tau * rest * (rest - tau),
-    )
 
 
 class FootCycle:

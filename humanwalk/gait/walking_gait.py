@@ -17,13 +17,13 @@ import numpy as np
 from humanwalk.gait.foot_cycle import (
     FootCycle,
     FootPathParameters,
-    quintic_blend,
     start_distance,
     start_swing,
     swing_hump,
 )
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.numerics import Array
+from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import ParameterError, require_in_range
 
 Side = Literal["Right", "Left"]

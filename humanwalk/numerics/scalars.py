@@ -1,6 +1,9 @@
 """Small functions of one number."""
 
 import math
+from typing import overload
+
+from humanwalk.numerics import Array
 
 
 def clip(x: float, low: float, high: float) -> float:
@@ -13,7 +16,15 @@ def wrapped(angle: float) -> float:
     return math.remainder(angle, 2.0 * math.pi)
 
 
-def blend(s: float) -> tuple[float, float]:
-    """A quintic from 0 at s = 0 to 1 at s = 1 with its slope; it rests at both ends and beyond."""
-    s = clip(s, 0.0, 1.0)
-    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s), 30.0 * (s * (1.0 - s)) ** 2
+@overload
+def quintic_blend(s: float) -> tuple[float, float, float]: ...
+@overload
+def quintic_blend(s: Array) -> tuple[Array, Array, Array]: ...
+def quintic_blend(s: float | Array) -> tuple[float | Array, ...]:
+    """10 s^3 - 15 s^4 + 6 s^5 on [0, 1] and its first two derivatives: 0 to 1, at rest at both ends."""
+    rest = 1.0 - s
+    return (
+        s**3 * (10.0 - 15.0 * s + 6.0 * s * s),
+        30.0 * (s * rest) ** 2,
+        60.0 * s * rest * (rest - s),
+    )

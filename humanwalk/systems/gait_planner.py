@@ -11,18 +11,18 @@ from pydrake.systems.framework import (
 )
 
 from humanwalk.body import SIDES, Side
+from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import BodyDynamics
+from humanwalk.terrain.terrain import Terrain
 from humanwalk.walking.command import Command
 from humanwalk.walking.step_planner import PlannerState, StepPlanner, StepPlannerParameters
 from humanwalk.walking.walking_reference import (
+    BodyState,
     FootTask,
     Phase,
     WalkingReference,
     other,
 )
-
-UNKNOWN: dict[Side, float] = dict.fromkeys(SIDES, 0.0)
-"""Forces of the feet that nobody asks for: to sum up the contacts costs as much as the planner itself."""
 
 
 class GaitPlanner(LeafSystem):
@@ -44,7 +44,12 @@ class GaitPlanner(LeafSystem):
     """
 
     def __init__(
-        self, plant: MultibodyPlant, parameters: StepPlannerParameters, first_swing: Side, period: float
+        self,
+        plant: MultibodyPlant,
+        parameters: StepPlannerParameters,
+        first_swing: Side,
+        period: float,
+        terrain: Terrain,
     ) -> None:
         """Make the planner.
 
@@ -53,21 +58,24 @@ class GaitPlanner(LeafSystem):
             parameters: of the planner.
             first_swing: the foot that swings first.
             period: time between plans [s].
+            terrain: on which the body walks.
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
         standing = plant.CreateDefaultContext()
-        hip_height, ankle_height = (
-            float(plant.GetFrameByName(f"RightLeg_{body}").CalcPoseInWorld(standing).translation()[2])
-            for body in ("Femur_Thigh", "Ankle")
+        leg = LEGS["Right"]
+        hip, ankle, sole = (
+            float(plant.GetFrameByName(frame).CalcPoseInWorld(standing).translation()[2])
+            for frame in (leg.thigh, leg.hindfoot, leg.sole)
         )
         self._planner = StepPlanner(
             parameters,
-            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(standing)[2]),
-            ankle_height=ankle_height,
-            leg_length=hip_height - ankle_height,
+            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(standing)[2]) - sole,
+            ankle_height=ankle - sole,
+            leg_length=hip - ankle,
             first_swing=first_swing,
             period=period,
+            terrain=terrain,
         )
         self._step_duration = parameters.timing.step
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
@@ -87,18 +95,19 @@ class GaitPlanner(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(period, 0.0, self._plan)
 
     def _start(self, context: Context, state: State) -> EventStatus:
-        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), UNKNOWN)
+        body = self._body(context)
         return self._remember(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
         remembered = context.get_abstract_state(int(self._memory)).get_value()
-        forces = UNKNOWN
-        if self._planner.listens(remembered):
-            felt = self._foot_forces.Eval(context)
-            forces = {side: float(felt[8 * place + 2]) for place, side in enumerate(SIDES)}
-        body = self._dynamics.body_state(self._state.Eval(context), context.get_time(), forces)
+        body = self._body(context)
         command = Command(*self._command.Eval(context).tolist())
         return self._remember(state, *self._planner.update(remembered, body, command))
+
+    def _body(self, context: Context) -> BodyState:
+        forces = self._foot_forces.Eval(context)
+        vertical = {side: float(forces[8 * place + 2]) for place, side in enumerate(SIDES)}
+        return self._dynamics.body_state(self._state.Eval(context), context.get_time(), vertical)
 
     def _remember(self, state: State, planned: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(planned)

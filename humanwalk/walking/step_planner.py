@@ -15,8 +15,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from humanwalk.body import SIDES, Side
-from humanwalk.numerics.scalars import blend, wrapped
+from humanwalk.numerics.scalars import clip, quintic_blend, wrapped
 from humanwalk.quantity import quantity
+from humanwalk.terrain.terrain import Terrain, height_at
 from humanwalk.walking.base_of_support import BaseOfSupport
 from humanwalk.walking.com_height import ComHeight
 from humanwalk.walking.command import Command
@@ -98,11 +99,19 @@ class StepPlannerParameters:
 
 
 class Swing(NamedTuple):
-    """The foot in the air: its way over ground, its profile, the foothold it is going to, yaw and toes as it left."""
+    """The swinging foot.
+
+    motion: of the ankle over the level plane.
+    profile: of height and pitch, for a foothold as high as the ground that the foot left.
+    foothold: where the ankle goes [m].
+    rise: height of the ground at the foothold above that at lift-off [m].
+    start_yaw, start_toes: yaw of the foot and extension of its toes at lift-off [rad].
+    """
 
     motion: PlanarMotion
     profile: SwingProfile
     foothold: complex
+    rise: float
     start_yaw: float
     start_toes: float
 
@@ -113,11 +122,13 @@ class PlannerState(NamedTuple):
     phase; elapsed: in the phase for standing and shift, in the step for double and single support [s].
     stance: the foot that carries in this step.
     right, left: ankles as they stand [m]; the swinging foot's is where it stood.
+    right_ground, left_ground: height of the ground below them [m].
+    support_start: height of the ground under the support as the phase began [m].
     heading, old_heading: of this step and of the one before [rad].
     path: what was commanded.
     turn: of the path where the walker is [rad/s].
     to_path: speed in this step beyond the commanded one, towards the path [m/s].
-    height, height_rate: of the centre of mass without its arcs [m, m/s].
+    height, height_rate: of the center of mass above the ground under the support, without its arcs [m, m/s].
     walked: steps since standing.
     swing: of the foot in the air.
     """
@@ -127,6 +138,9 @@ class PlannerState(NamedTuple):
     stance: Side
     right: complex
     left: complex
+    right_ground: float
+    left_ground: float
+    support_start: float
     heading: float
     old_heading: float
     path: CommandedPath
@@ -145,6 +159,10 @@ class PlannerState(NamedTuple):
         """Where a foot stands."""
         return self.right if side == "Right" else self.left
 
+    def ground(self, side: Side) -> float:
+        """Height of the ground where a foot stands."""
+        return self.right_ground if side == "Right" else self.left_ground
+
     @property
     def middle(self) -> complex:
         """Between the ankles."""
@@ -161,6 +179,7 @@ class StepPlanner:
         leg_length: distance of hip and ankle of a straight leg [m].
         first_swing: the foot that swings first.
         period: time between two ticks [s].
+        terrain: on which the walker steps.
     """
 
     def __init__(
@@ -171,6 +190,7 @@ class StepPlanner:
         leg_length: float,
         first_swing: Side,
         period: float,
+        terrain: Terrain,
     ) -> None:
         self.parameters = parameters
         self.standing_com_height = standing_com_height
@@ -179,20 +199,26 @@ class StepPlanner:
         self.leg_length = leg_length
         self.first_swing = first_swing
         self.period = period
+        self.terrain = terrain
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
         """Standing on both feet; the path begins along a heading, wherever the feet face."""
         middle = 0.5 * (body.right.position + body.left.position)
+        right_ground, left_ground = (height_at(self.terrain, foot.position) for foot in (body.right, body.left))
+        support = 0.5 * (right_ground + left_ground)
         return PlannerState(
             phase=Phase.STAND,
             elapsed=0.0,
             stance=other(self.first_swing),
             right=body.right.position,
             left=body.left.position,
+            right_ground=right_ground,
+            left_ground=left_ground,
+            support_start=support,
             heading=heading,
             old_heading=heading,
             path=CommandedPath.begin(middle, heading),
-            height=body.com_height,
+            height=body.com_height - support,
         )
 
     def update(self, state: PlannerState, body: BodyState, command: Command) -> tuple[PlannerState, WalkingReference]:
@@ -209,7 +235,7 @@ class StepPlanner:
         timing = self.parameters.timing
         moving = abs(command.speed) > self.parameters.stop_speed or abs(command.turn) > self.parameters.stop_speed
         if state.phase is Phase.STAND and moving:
-            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
+            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, support_start=self._support(state)[0])
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
             # The shift is the first step's double support: the foot that was left carries nothing any more.
             return self._lift_off(state._replace(elapsed=timing.double_support), body, command)
@@ -218,13 +244,6 @@ class StepPlanner:
         if state.phase is Phase.SINGLE_SUPPORT and self._has_landed(state, body):
             return self._touch_down(state, body, command, moving)
         return state
-
-    def listens(self, state: PlannerState) -> bool:
-        """Whether the next update may look at the feet's forces: while a foot comes to the ground, early or late."""
-        if state.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
-            return False
-        late = self._progress(state) >= self.parameters.timing.early_touchdown
-        return late or state.elapsed <= self.parameters.rockers.heel
 
     def _has_landed(self, state: PlannerState, body: BodyState) -> bool:
         progress, timing = self._progress(state), self.parameters.timing
@@ -244,7 +263,7 @@ class StepPlanner:
             foot.height_rate,
             foot.pitch,
             foot.pitch_rate,
-            self.ankle_height,
+            state.ground(other(state.stance)) + self.ankle_height,
             self.parameters.swing.heel_strike(command.forward),
             timing.step - timing.double_support,
             self.parameters.swing,
@@ -252,8 +271,8 @@ class StepPlanner:
         pace = command.speed * cmath.exp(1j * state.heading)
         motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.leaving(pace))
         left_as = self._other_foot(state, command, None, 1.0)
-        swing = Swing(motion, profile, foot.position, foot.yaw, left_as.toes[0])
-        return state._replace(phase=Phase.SINGLE_SUPPORT, swing=swing)
+        swing = Swing(motion, profile, foot.position, 0.0, foot.yaw, left_as.toes[0])
+        return state._replace(phase=Phase.SINGLE_SUPPORT, support_start=state.ground(state.stance), swing=swing)
 
     def _touch_down(self, state: PlannerState, body: BodyState, command: Command, moving: bool) -> PlannerState:
         """The swinging foot becomes the stance foot; both are where they are measured, so that no error adds up."""
@@ -270,6 +289,9 @@ class StepPlanner:
             stance=stance,
             right=right,
             left=left,
+            right_ground=height_at(self.terrain, right),
+            left_ground=height_at(self.terrain, left),
+            support_start=state.ground(state.stance),
             heading=ahead.heading,
             old_heading=state.heading,
             path=path,
@@ -283,9 +305,13 @@ class StepPlanner:
     def _settled(self, state: PlannerState, body: BodyState) -> PlannerState:
         """A stance foot that has not come to the ground yet will stand where it is now, not where its time was over."""
         foot, timing = body.foot(state.stance), self.parameters.timing
-        if foot.force >= timing.touchdown_force or state.elapsed > self.parameters.rockers.heel or state.walked == 0:
+        airborne = foot.force < timing.touchdown_force and state.walked > 0
+        if not (airborne and 0.0 < state.elapsed <= self.parameters.rockers.heel):
             return state
-        return state._replace(right=foot.position) if state.stance == "Right" else state._replace(left=foot.position)
+        ground = height_at(self.terrain, foot.position)
+        if state.stance == "Right":
+            return state._replace(right=foot.position, right_ground=ground)
+        return state._replace(left=foot.position, left_ground=ground)
 
     # Standing.
 
@@ -302,7 +328,7 @@ class StepPlanner:
             ends = gait.end_offsets(self.frequency)
             goal = backward(segments, ends.left if stance_is_left else ends.right, self.frequency) * u
             goal += self.parameters.support.middle_of(state.ankle(state.stance), state.heading)
-            share, slope = blend(state.elapsed / self.parameters.timing.weight_shift)
+            share, slope, _ = quintic_blend(min(state.elapsed / self.parameters.timing.weight_shift, 1.0))
             rate = slope * (goal - reference) / self.parameters.timing.weight_shift
             reference += share * (goal - reference)
         zmp = reference - rate / self.frequency + (1.0 + self.parameters.dcm_gain) * (xi - reference)
@@ -356,6 +382,8 @@ class StepPlanner:
             swing = self._swing_on(state, swing, stance + u * foothold, rate, command)
             foothold_W, reach = swing.foothold, (swing.foothold - com) / u
             highest = self.parameters.height.highest_for(reach, self.leg_length, self.standing_com_height)
+            # That is a height above the foothold.
+            highest += state.ground(other(state.stance)) + swing.rise - state.ground(state.stance)
 
         feet: dict[Side, FootReference] = {
             state.stance: self._stance_foot(state, command, swing),
@@ -376,7 +404,9 @@ class StepPlanner:
         if remaining > placement.freeze:
             is_first = state.elapsed - timing.double_support < 0.5 * self.period
             share = 1.0 if is_first else self.period / (self.period + placement.smoothing)
-            swing = swing._replace(foothold=swing.foothold + share * (goal - swing.foothold))
+            foothold = swing.foothold + share * (goal - swing.foothold)
+            rise = height_at(self.terrain, foothold) - state.ground(other(state.stance))
+            swing = swing._replace(foothold=foothold, rise=rise)
         pace = command.speed * cmath.exp(1j * state.heading)
         landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
         motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
@@ -442,17 +472,24 @@ class StepPlanner:
             return FootReference(FootTask.FLAT, load, state.old_heading)
         progress = self._progress(state)
         profile = swing.profile.at(progress)
-        relaxed, slope = blend(progress / TOES_RELAXED)
-        slope *= rate / (TOES_RELAXED * (timing.step - timing.double_support))
+        progress_rate = rate / (timing.step - timing.double_support)
+        share, slope, curvature = quintic_blend(clip(progress, 0.0, 1.0))
+        rise = (share, slope * progress_rate, curvature * progress_rate**2)
+        relaxed, relaxing, _ = quintic_blend(clip(progress / TOES_RELAXED, 0.0, 1.0))
+        relaxing *= progress_rate / TOES_RELAXED
         goal_yaw = state.heading + state.turn * timing.step
         return FootReference(
             FootTask.SWING,
             0.0,
-            swing.start_yaw + blend(progress)[0] * wrapped(goal_yaw - swing.start_yaw),
+            swing.start_yaw + share * wrapped(goal_yaw - swing.start_yaw),
             swing.motion,
-            (profile.height, rate * profile.height_rate, rate**2 * profile.height_acceleration),
+            (
+                profile.height + swing.rise * rise[0],
+                rate * profile.height_rate + swing.rise * rise[1],
+                rate**2 * profile.height_acceleration + swing.rise * rise[2],
+            ),
             (profile.pitch, rate * profile.pitch_rate, rate**2 * profile.pitch_acceleration),
-            (swing.start_toes * (1.0 - relaxed), -swing.start_toes * slope),
+            (swing.start_toes * (1.0 - relaxed), -swing.start_toes * relaxing),
         )
 
     def _pace(self, state: PlannerState, step: complex, command: Command) -> float:
@@ -471,7 +508,7 @@ class StepPlanner:
     def _height(
         self, state: PlannerState, forward_speed: float, highest: float = math.inf
     ) -> tuple[PlannerState, tuple[float, float, float]]:
-        """Height of the centre of mass: its mean that follows the phase, and an arc over each stance leg.
+        """Height of the center of mass: the ground under the support, a mean that follows the phase, and an arc.
 
         The mean goes down to `highest` if it has to.
         """
@@ -484,10 +521,29 @@ class StepPlanner:
         goal = min(goal, highest)
         height, rate, acceleration = law.approach(state.height, state.height_rate, goal, self.period, stretched)
         above = law.arc(state.elapsed, self.parameters.timing.step, forward_speed)
-        reference = (state.height + above[0], state.height_rate + above[1], acceleration + above[2])
+        support = self._support(state)
+        reference = (
+            support[0] + state.height + above[0],
+            support[1] + state.height_rate + above[1],
+            support[2] + acceleration + above[2],
+        )
         return state._replace(height=height, height_rate=rate), reference
 
     # Both.
+
+    def _support(self, state: PlannerState) -> tuple[float, float, float]:
+        """Height of the ground under the support, with rate and acceleration [m, m/s, m/s2].
+
+        That under the stance foot, or in standing between the feet; it is approached from that of the phase before.
+        """
+        timing = self.parameters.timing
+        start, end = state.support_start, state.ground(state.stance)
+        if state.phase is Phase.STAND:
+            end = 0.5 * (state.right_ground + state.left_ground)
+        duration = timing.weight_shift if state.phase is Phase.WEIGHT_SHIFT else timing.double_support
+        share, slope, curvature = quintic_blend(min(state.elapsed / duration, 1.0))
+        rise = end - start
+        return start + rise * share, rise * slope / duration, rise * curvature / duration**2
 
     def _supported(self, state: PlannerState, zmp: complex, both: bool, on_ball: bool = False) -> complex:
         """The zero-moment point, kept over the stance foot or its front, or over both feet and between."""
@@ -520,6 +576,7 @@ class StepPlanner:
             dcm=xi,
             dcm_reference=xi_reference,
             com_height=height,
+            ground_height=self._support(state)[0],
             right=feet["Right"],
             left=feet["Left"],
             pelvis_yaw=facing - rotation.pelvis * lead,

@@ -95,7 +95,8 @@ class WalkingReference:
     phase, phase_time: what the walker is at, and for how long [s].
     zmp: zero-moment point [m].
     dcm, dcm_reference: measured and nominal [m], for records.
-    com_height: of the centre of mass, with rate and acceleration [m, m/s, m/s2].
+    com_height: of the center of mass, with rate and acceleration [m, m/s, m/s2].
+    ground_height: of the ground under the support [m].
     right, left: the feet.
     pelvis_yaw, chest_yaw: [rad].
     shoulder_flexion, elbow_flexion: angle and rate of right, then left [rad, rad/s].
@@ -108,6 +109,7 @@ class WalkingReference:
     dcm: complex
     dcm_reference: complex
     com_height: tuple[float, float, float]
+    ground_height: float
     right: FootReference
     left: FootReference
     pelvis_yaw: float
@@ -130,5 +132,11 @@ def other(side: Side) -> Side:
 
 
 def com_acceleration(com: complex, zmp: complex, com_height: float, vertical_acceleration: float) -> complex:
-    """Acceleration of the centre of mass over ground that puts the zero-moment point at `zmp` [m/s2]."""
+    """Acceleration of the center of mass over ground that puts the zero-moment point at `zmp` [m/s2].
+
+    Args:
+        com, zmp: over the level plane [m].
+        com_height: of the center of mass above the zero-moment point [m].
+        vertical_acceleration: of the center of mass [m/s2].
+    """
     return (GRAVITY + vertical_acceleration) / com_height * (com - zmp)

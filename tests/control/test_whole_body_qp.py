@@ -46,6 +46,7 @@ def reference_for(body, zmp=None, right=None, left=None):
         dcm=com,
         dcm_reference=com,
         com_height=(float(body.com[2]), 0.0, 0.0),
+        ground_height=0.0,
         right=right or flat,
         left=left or flat,
         pelvis_yaw=0.0,

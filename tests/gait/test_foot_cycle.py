@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import make_interp_spline
 
 from humanwalk.gait.arc_length import ArcLength
 from humanwalk.gait.foot_cycle import (
@@ -15,13 +14,13 @@ from humanwalk.gait.foot_cycle import (
     FootPathParameters,
     SwingCurve,
     minimum_offset,
-    quintic_blend,
     smooth_swing,
     start_distance,
     start_swing,
     thesis_swing,
 )
 from humanwalk.gait.splines import CubicHermite
+from humanwalk.numerics.scalars import quintic_blend
 
 LAWS = ("thesis", "smooth")
 LEG_LENGTH = 0.864  # hip to ankle, thesis' man (E32)
@@ -201,16 +200,6 @@ def test_smooth_swing_asks_for_far_less_acceleration():
 def test_the_path_is_the_same_shape_at_every_size():
     small, large = (FootPathParameters(L, H) for L, H in ((0.25, 0.05), (0.5, 0.1)))
     np.testing.assert_allclose(2 * swing_points(small), swing_points(large), atol=1e-9)
-
-
-def test_quintic_blend_and_its_derivatives():
-    tau = np.linspace(0.0, 1.0, 101)
-    value, slope, curvature = quintic_blend(tau)
-    fitted = make_interp_spline(tau, value, k=5)
-    np.testing.assert_allclose(slope, fitted(tau, nu=1), atol=1e-8)
-    np.testing.assert_allclose(curvature, fitted(tau, nu=2), atol=1e-5)
-    assert (value[0], slope[0], curvature[0]) == (0.0, 0.0, 0.0)
-    assert (value[-1], slope[-1], curvature[-1]) == (1.0, 0.0, 0.0)
 
 
 def test_timing_at_the_thesis_speed():

@@ -5,6 +5,7 @@ import pytest
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.systems.gait_planner import GaitPlanner
+from humanwalk.terrain import Plane
 from humanwalk.walking.step_planner import StepPlannerParameters
 from humanwalk.walking.walking_reference import Phase
 
@@ -13,7 +14,7 @@ PERIOD = 0.004
 
 @pytest.fixture
 def planner(plant):
-    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD)
+    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, Plane())
 
 
 def simulator_of(planner, plant, command):

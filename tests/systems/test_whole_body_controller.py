@@ -5,6 +5,7 @@ import pytest
 
 from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.systems.whole_body_controller import WholeBodyController
+from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
 
@@ -29,7 +30,7 @@ def standing(plant, joints):
 @pytest.fixture
 def plan(controller, standing):
     body = controller._dynamics.body_state(standing, 0.0, {"Right": 350.0, "Left": 350.0})
-    planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD)
+    planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
     return planner.update(planner.start(body), body, Command())[1]
 
 

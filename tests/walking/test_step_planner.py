@@ -5,10 +5,13 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from humanwalk.terrain import Plane
+from humanwalk.terrain.terrain import height_at
 from humanwalk.walking.command import Command
 from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
 from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase, other
@@ -17,10 +20,21 @@ PERIOD = 0.004
 ANKLE = 0.068
 LEG = 0.864
 PARAMETERS = StepPlannerParameters()
+LEVEL = Plane()
 
 
-def planner(**changes):
-    return StepPlanner(replace(PARAMETERS, **changes), 0.98, ANKLE, LEG, "Right", PERIOD)
+class Stairs:
+    """Steps of one rise along x, of which only heights are known."""
+
+    def __init__(self, rise, tread=0.3, base=0.0):
+        self.rise, self.tread, self.base = rise, tread, base
+
+    def height(self, xy):
+        return self.base + self.rise * np.floor(xy[..., 0] / self.tread)
+
+
+def planner(terrain=LEVEL, period=PERIOD):
+    return StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period, terrain)
 
 
 def foot(position, force=350.0, **changes):
@@ -176,7 +190,7 @@ def test_the_zero_moment_point_stays_over_the_stance_foot():
 
 def test_durations_do_not_depend_on_the_control_period():
     def landings(period):
-        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period)
+        plan = planner(period=period)
         body, state, times = standing(), None, []
         state = plan.start(body)
         for tick in range(round(4.0 / period)):
@@ -228,16 +242,77 @@ def test_a_foot_whose_time_is_over_in_the_air_stands_where_it_comes_down():
     assert stance_after(500.0) == state.ankle(state.stance)
 
 
-def test_where_it_does_not_listen_the_feets_forces_do_not_matter():
-    """The system sums up the contacts only where it listens."""
-    plan, command = planner(), walk_at(1.0)
-    deaf = 0
-    for (_, state, _, _), (time, _, _, body) in pairwise(pendulum_walk(plan, command, 4.0)):
-        if not plan.listens(state):
-            unloaded, loaded = (
-                replace(body, right=replace(body.right, force=force), left=replace(body.left, force=force))
-                for force in (0.0, 1000.0)
-            )
-            assert plan.update(state, unloaded, command(time)) == plan.update(state, loaded, command(time))
-            deaf += 1
-    assert deaf > 300
+def raised(body, height):
+    feet = {side: replace(body.foot(side.title()), height=ANKLE + height) for side in ("right", "left")}
+    return replace(body, com_height=body.com_height + height, **feet)
+
+
+@given(st.floats(-50.0, 50.0))
+@settings(max_examples=5)
+def test_on_higher_ground_every_height_is_greater_by_that(height):
+    low, high = planner(), planner(Stairs(0.0, base=height))
+    state = high.start(raised(standing(), height))
+    for time, _, reference, body in pendulum_walk(low, walk_at(0.8), 4.0):
+        state, above = high.update(state, raised(body, height), walk_at(0.8)(time))
+        assert above.ground_height == pytest.approx(height)
+        assert above.com_height == pytest.approx(lifted(reference.com_height, height), abs=1e-9)
+        for side in ("Right", "Left"):
+            foot_above, foot_below = above.foot(side), reference.foot(side)
+            if foot_below.task is FootTask.SWING:
+                assert foot_above.height == pytest.approx(lifted(foot_below.height, height), abs=1e-9)
+                assert foot_above.position == pytest.approx(foot_below.position, abs=1e-9)
+        assert above.zmp == pytest.approx(reference.zmp, abs=1e-9)
+
+
+def lifted(height, by):
+    return (height[0] + by, *height[1:])
+
+
+@pytest.mark.parametrize("rise", [0.05, -0.05])
+def test_a_swing_ends_at_the_height_of_its_foothold(rise):
+    stairs, swings = Stairs(rise), 0
+    walk = list(pendulum_walk(planner(stairs), walk_at(0.5), 6.0))
+    for (_, state, reference, _), (_, later, _, _) in pairwise(walk):
+        if state.phase is Phase.SINGLE_SUPPORT and later.phase is Phase.DOUBLE_SUPPORT:
+            ankle = reference.foot(other(state.stance)).height[0]
+            goal = height_at(stairs, reference.foothold) + ANKLE - PARAMETERS.swing.landing_depth
+            assert ankle == pytest.approx(goal, abs=0.01)
+            swings += 1
+    assert swings > 5
+
+
+@pytest.mark.parametrize("rise", [0.05, -0.05])
+def test_the_ground_under_the_support_goes_from_foot_to_foot_without_a_jump(rise):
+    stairs = Stairs(rise)
+    walk = [w for w in pendulum_walk(planner(stairs), lambda time: Command(0.5 if 0.2 < time < 5.0 else 0.0), 8.0)]
+    grounds = [reference.ground_height for _, _, reference, _ in walk]
+    assert max(abs(later - earlier) for earlier, later in pairwise(grounds)) < 0.01
+    for _, state, reference, _ in walk:
+        if reference.phase is Phase.SINGLE_SUPPORT:
+            assert reference.ground_height == pytest.approx(height_at(stairs, state.ankle(state.stance)))
+    assert abs(grounds[-1]) >= 4 * abs(rise)
+
+
+def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stairs():
+    walk = pendulum_walk(planner(Stairs(0.05)), walk_at(0.5), 6.0)
+    references = [reference for _, _, reference, _ in walk]
+    for before, after in pairwise(references):
+        if before.phase is after.phase and after.phase_time - before.phase_time == pytest.approx(PERIOD):
+            mean_rate = 0.5 * (before.com_height[1] + after.com_height[1])
+            rate = (after.com_height[0] - before.com_height[0]) / PERIOD
+            assert rate == pytest.approx(mean_rate, abs=0.02)
+
+
+def test_heights_are_looked_up_at_most_once_a_tick_between_touchdowns():
+    class Counting(Stairs):
+        calls = 0
+
+        def height(self, xy):
+            Counting.calls += 1
+            return super().height(xy)
+
+    plan, before, previous = planner(Counting(0.0)), 0, None
+    for _, state, _, _ in pendulum_walk(plan, walk_at(1.0), 4.0):
+        landed = previous is Phase.SINGLE_SUPPORT and state.phase is Phase.DOUBLE_SUPPORT
+        assert Counting.calls - before <= (2 if landed or previous is None else 1)
+        before, previous = Counting.calls, state.phase
