@@ -28,7 +28,7 @@ from humanwalk.bench.result import machine
 from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.body.joint_map import JointMap
 from humanwalk.files import write_text
-from humanwalk.measures.summary import contact_with_hysteresis
+from humanwalk.measures.events import contact_with_hysteresis
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.simulate import prepare

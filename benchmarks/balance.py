@@ -26,8 +26,10 @@ from pydrake.systems.framework import Context, Diagram
 
 from humanwalk.body import SIDES
 from humanwalk.diagrams.choose import make_diagram
+from humanwalk.measures.effort import cost_of_transport
+from humanwalk.measures.events import touchdowns
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import cost_of_transport, steady_from, touchdowns
+from humanwalk.measures.summary import steady_from
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario

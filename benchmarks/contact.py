@@ -25,8 +25,10 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.contact.asperity import AsperityParameters, friction_bound, friction_force, normal_force
 from humanwalk.contact.contact_step import Contacts, ContactStep
 from humanwalk.diagrams.choose import make_diagram
+from humanwalk.measures.events import CONTACT_ON_N, foot_contact, touchdowns
 from humanwalk.measures.signals import TIME, matrix, signal_columns
-from humanwalk.measures.summary import CONTACT_ON_N, GRAVITY, foot_contact, steady_from, touchdowns
+from humanwalk.measures.summary import steady_from
+from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems import asperity_contact

@@ -34,12 +34,11 @@ REQUIRED = {
 def measure_once(overrides: dict[str, str]) -> dict:
     """Simulate in this process and return its measures."""
     from humanwalk.measures.signals import matrix
-    from humanwalk.measures.summary import summarize
     from humanwalk.run.simulate import simulate
     from humanwalk.scenario import load_scenario
 
     outcome = simulate(load_scenario("thesis", overrides))
-    summary = summarize(outcome, "thesis")
+    summary = outcome.summary("thesis")
     bits = hashlib.sha256(matrix(outcome.signals, outcome.signals.column_names).tobytes()).hexdigest()
     lift = summary["foot_lift_m"]
     return {

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from humanwalk import Run
+from humanwalk import Run, plot
 from humanwalk.exchange import export_run
 
 
@@ -23,7 +23,7 @@ def main(folder: Path) -> float:
     knee = np.rad2deg(run["RightLegTibiaMotion.angle"])
     print(f"the right knee goes from {knee.min():.0f} to {knee.max():.0f} degrees")
 
-    figure = run.plot("ground_reaction")
+    figure = plot(run, "ground_reaction")
     figure.savefig(folder / "my_ground_reaction.png")
     for path in export_run(run, "opensim"):
         print(f"wrote {path}")

@@ -8,13 +8,12 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from humanwalk import load_scenario, simulate
-from humanwalk.measures.summary import summarize
 
 
 def walk(step_height: float, duration: float) -> dict[str, float]:
     """The summary of a walk with a step height [m]."""
     scenario = load_scenario("thesis", {"gait.path.step_height": str(step_height), "duration": str(duration)})
-    return summarize(simulate(scenario), f"step height {step_height:g} m")
+    return simulate(scenario).summary(f"step height {step_height:g} m")
 
 
 def main(

@@ -10,7 +10,7 @@ For scripts and notebooks, what most of them need is here:
 
     outcome = simulate(load_scenario("thesis", {"gait.path.step_height": "0.12", "duration": "3"}))
     run = outcome.save("runs/low")
-    run["RightLegTibiaMotion.torque"]  # with run.units; run.summary; run.plot("joint_torques")
+    run["RightLegTibiaMotion.torque"]  # with run.units; run.summary; humanwalk.plot(run, "joint_torques")
 """
 
 from importlib import import_module
@@ -23,13 +23,15 @@ if TYPE_CHECKING:
     from humanwalk.diagrams.walker import make_walker
     from humanwalk.quantity import ParameterError
     from humanwalk.run.folder import Run
-    from humanwalk.run.simulate import Outcome, simulate
+    from humanwalk.run.outcome import Outcome
+    from humanwalk.run.simulate import simulate
     from humanwalk.scenario import Scenario, load_scenario
+    from humanwalk.view.plots import plot
 
 __version__ = version("humanwalk")
 
 _HOMES = {
-    "Outcome": "humanwalk.run.simulate",
+    "Outcome": "humanwalk.run.outcome",
     "ParameterError": "humanwalk.quantity",
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
@@ -37,6 +39,7 @@ _HOMES = {
     "make_balanced_walker": "humanwalk.choices.balanced",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
+    "plot": "humanwalk.view.plots",
     "simulate": "humanwalk.run.simulate",
 }
 
@@ -50,6 +53,7 @@ __all__ = [
     "make_balanced_walker",
     "make_playback",
     "make_walker",
+    "plot",
     "simulate",
 ]
 

@@ -14,7 +14,7 @@ from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.measures.human_likeness import ANGLES, people
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import GRAVITY
+from humanwalk.quantity import GRAVITY
 
 PERIOD = 0.005
 WEIGHT = 70.0 * GRAVITY

@@ -95,7 +95,7 @@ def test_read_a_run_reads_what_a_script_saved(tmp_path):
     with pytest.raises(humanwalk.ParameterError, match=r"RightLegTibiaMotion\.torque_N_m"):
         run["RightLegTibaMotion.torque"]
     with pytest.raises(humanwalk.ParameterError, match="joint_torques"):
-        run.plot("joint_torqes")
+        humanwalk.plot(run, "joint_torqes")
     with pytest.raises(humanwalk.ParameterError, match="holds files already"):
         humanwalk.simulate(humanwalk.load_scenario("thesis", {"duration": "0.002"})).save(run.path)
 

@@ -15,8 +15,9 @@ from rich.table import Table
 from humanwalk.files import write_text
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room, write_run
-from humanwalk.run.simulate import Outcome, simulate
+from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
+from humanwalk.run.outcome import Outcome
+from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
 from humanwalk.view.replay import make_meshcat, static_page
@@ -102,11 +103,11 @@ def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
         ParameterError: it could not be written to `path`; says where it is.
     """
     try:
-        return write_run(path, outcome, name)
+        return outcome.write(path, name)
     except ParameterError as error:
         rescue = Path(tempfile.mkdtemp(prefix=f"humanwalk-{name}-"))
         try:
-            write_run(rescue, outcome, name)
+            outcome.write(rescue, name)
         except ParameterError:
             shutil.rmtree(rescue, ignore_errors=True)
             raise error from None
@@ -125,7 +126,7 @@ def _simulate_with_progress(
     def checkpoint(so_far: Outcome) -> None:
         # A disk that is full now may have room at the end.
         with suppress(ParameterError):
-            write_run(path, so_far, name)
+            so_far.write(path, name)
 
     columns = (
         TextColumn("{task.description}"),

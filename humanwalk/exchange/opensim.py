@@ -20,8 +20,8 @@ from humanwalk.body.opensim_names import (
 )
 from humanwalk.exchange.motion import ground_forces, marker_paths, sample_rate
 from humanwalk.files import write_text
+from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import joint_names
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run

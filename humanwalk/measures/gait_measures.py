@@ -14,8 +14,10 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
-from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import foot_contact, joint_names
+from humanwalk.body.limbs import other_side
+from humanwalk.measures.effort import joint_work
+from humanwalk.measures.events import foot_contact
+from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array, Mask
 
 
@@ -74,7 +76,7 @@ def gait_measures(signals: pa.Table, begin: float) -> dict[str, Any]:
         "cop_excursion_m": {
             axis: _each(feet, lambda side, axis=axis: cop_excursions(signals, side, feet[side], axis)) for axis in "xy"
         },
-        "joint_work_J": joint_work(signals, feet["Right"]),
+        "joint_work_J": joint_work(signals, feet["Right"].touchdowns),
     }
 
 
@@ -141,32 +143,6 @@ def cop_excursions(signals: pa.Table, side: Side, foot: Footfalls, axis: str) ->
     loaded = signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
     stances = [cop[a:b][loaded[a:b]] for a, b in foot.stances]
     return np.array([np.ptp(stance) for stance in stances if stance.size])
-
-
-def joint_work(signals: pa.Table, foot: Footfalls) -> dict[str, dict[str, float]] | None:
-    """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
-
-    Over the whole strides of `foot`; None without one.
-    """
-    if not foot.strides:
-        return None
-    rows = slice(foot.touchdowns[0], foot.touchdowns[-1] + 1)
-    time = _time(signals)[rows]
-    names = joint_names(signals)
-    power = matrix(signals, [f"{name}.torque_N_m" for name in names])[rows]
-    power = power * matrix(signals, [f"{name}.velocity_rad_s" for name in names])[rows]
-    strides = len(foot.strides)
-    positive = np.trapezoid(np.maximum(power, 0.0), time, axis=0) / strides
-    negative = np.trapezoid(np.minimum(power, 0.0), time, axis=0) / strides
-    return {
-        name: {"positive": float(delivered), "negative": float(absorbed)}
-        for name, delivered, absorbed in zip(names, positive, negative, strict=True)
-    }
-
-
-def other_side(side: Side) -> Side:
-    """Left of Right, and Right of Left."""
-    return "Left" if side == "Right" else "Right"
 
 
 def _time(signals: pa.Table) -> Array:

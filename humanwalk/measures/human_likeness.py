@@ -18,12 +18,13 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body import SIDES, Side
+from humanwalk.body.limbs import other_side
+from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.gait_measures import (
     Footfalls,
     cadence,
     double_support_shares,
     footfalls,
-    other_side,
     stance_shares,
     step_lengths,
     step_widths,
@@ -31,9 +32,9 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import GRAVITY, cost_of_transport, steady_from
+from humanwalk.measures.summary import steady_from
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import Scenario
 
 CYCLE = np.linspace(0.0, 100.0, 101)

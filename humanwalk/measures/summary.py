@@ -8,36 +8,27 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-from pydrake.multibody.tree import UniformGravityFieldElement
 
 from humanwalk.body import SIDES
 from humanwalk.choices.reference import make_gait
+from humanwalk.measures.effort import cost_of_transport, joint_names
+from humanwalk.measures.events import touchdowns
+from humanwalk.measures.gait_measures import gait_measures
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
-from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario
-
-CONTACT_ON_N = 50.0
-CONTACT_OFF_N = 20.0
-"""Vertical force at which an unloaded foot counts as landed, and a loaded one as lifted [N]."""
-
-SHORTEST_PHASE_S = 0.05
-"""Contact or flight of a foot shorter than this is a bounce and no event [s]."""
 
 SETTLING = 2.0
 """Time that the balanced walk takes to settle after its first ramp [s]."""
 
-GRAVITY = UniformGravityFieldElement.kDefaultStrength
 
-
-def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
+def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> dict[str, Any]:
     """The summary of a run, ready for JSON; keys carry their units.
 
     Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
     end. A run that ended before has null there, and so has every number that is not finite. Without physics there are
     no forces: steps, lift, support, torques and cost are null or none.
     """
-    scenario, signals = outcome.scenario, outcome.signals
     time = signals[TIME].to_numpy()
     steady = time >= steady_from(scenario)
     joints = joint_names(signals)
@@ -45,13 +36,13 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
     physics = not scenario.follow.kinematic
     supported = physics and scenario.controller == "thesis" and scenario.balance.support.enabled
     summary = {
-        "scenario": scenario_name,
+        "scenario": name,
         "description": scenario.description,
-        "survived": outcome.survived,
-        "end": outcome.end,
+        "survived": end == "completed",
+        "end": end,
         "physics": physics,
         "duration_s": float(time[-1]),
-        "fall_time_s": float(time[-1]) if outcome.end == "fell" else None,
+        "fall_time_s": float(time[-1]) if end == "fell" else None,
         "steady_from_s": steady_from(scenario),
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
@@ -70,10 +61,11 @@ def summarize(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
         "ik_converged_share": ik_converged_share(signals),
         "qp_failures": qp_failures(signals),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass) if physics else None,
-        "wall_time_s": outcome.wall_time,
-        "realtime_factor": float(time[-1]) / outcome.wall_time,
+        "wall_time_s": wall_time,
+        "realtime_factor": float(time[-1]) / wall_time,
         "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
         "seed": scenario.seed,
+        "gait": gait_measures(signals, steady_from(scenario)) if physics else None,
     }
     return {key: _finite(value) for key, value in summary.items()}
 
@@ -93,43 +85,6 @@ def steady_from(scenario: Scenario) -> float:
         ramp = abs(complex(first.forward, first.sideways)) / command.acceleration
         return first.time + scenario.balanced.planner.timing.weight_shift + ramp + SETTLING
     return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
-
-
-def joint_names(signals: pa.Table) -> list[str]:
-    """The actuated joints of a record, in actuator order."""
-    ending = ".torque_N_m"
-    return [name.removesuffix(ending) for name in signals.column_names if name.endswith(ending)]
-
-
-def foot_contact(signals: pa.Table, side: str) -> npt.NDArray[np.bool_]:
-    """Whether a foot is on the ground, by its vertical force with hysteresis and without bounces; shape (rows,)."""
-    time = signals[TIME].to_numpy()
-    force = signals[f"{side.lower()}_foot.force_z_N"].to_numpy()
-    return contact_with_hysteresis(time, force)
-
-
-def contact_with_hysteresis(time: Array, force: Array) -> npt.NDArray[np.bool_]:
-    """On above CONTACT_ON_N, off below CONTACT_OFF_N; phases shorter than SHORTEST_PHASE_S are merged away."""
-    on, off = force >= CONTACT_ON_N, force <= CONTACT_OFF_N
-    decided = np.where(on | off, np.arange(force.size), 0)
-    decided[0] = 0
-    contact: npt.NDArray[np.bool_] = on[np.maximum.accumulate(decided)]
-    edges = np.flatnonzero(np.diff(contact.astype(int))) + 1
-    # A body that starts standing feels no force yet: that is no landing.
-    if edges.size and time[edges[0]] - time[0] < SHORTEST_PHASE_S:
-        contact[: edges[0]] = contact[edges[0]]
-        edges = edges[1:]
-    for begin, end in pairwise(edges):
-        if time[end] - time[begin] < SHORTEST_PHASE_S:
-            contact[begin:end] = contact[begin - 1]
-    return contact
-
-
-def touchdowns(signals: pa.Table, side: str) -> Array:
-    """Times [s] at which a foot lands after having been lifted."""
-    contact = foot_contact(signals, side).astype(int)
-    times: Array = signals[TIME].to_numpy()[1:][np.diff(contact) > 0]
-    return times
 
 
 def foot_lift(signals: pa.Table, side: str) -> float | None:
@@ -176,27 +131,6 @@ def ik_converged_share(signals: pa.Table) -> float | None:
     """Share of the samples at which a leg's inverse kinematics had converged; null where none was solved."""
     columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
     return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
-
-
-def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:
-    """Mechanical cost of transport: time integral of sum |tau w| over m g d, nothing regained.
-
-    Args:
-        signals: the record.
-        rows: which rows count.
-        mass: of the body [kg].
-    """
-    if rows.sum() < 2:
-        return None
-    time = signals[TIME].to_numpy()[rows]
-    x = signals["com.x_m"].to_numpy()[rows]
-    names = joint_names(signals)
-    power = np.abs(
-        matrix(signals, [f"{name}.torque_N_m" for name in names])
-        * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
-    ).sum(axis=1)
-    distance = x[-1] - x[0]
-    return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
 
 
 def _finite(value: Any) -> Any:

@@ -9,24 +9,17 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from humanwalk.files import make_folder, write_text, write_whole
-from humanwalk.measures.gait_measures import gait_measures
 from humanwalk.measures.signals import TIME, column_of, unit_of
-from humanwalk.measures.summary import steady_from, summarize
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.provenance import provenance
-from humanwalk.run.simulate import Outcome
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
@@ -107,22 +100,6 @@ class Run:
         """
         values: Array = self.signals[column_of(self.signals.column_names, name)].to_numpy()
         return values
-
-    def plot(self, name: str) -> "Figure":
-        """A plot of the run by its name, as a matplotlib figure; a notebook shows it.
-
-        Raises:
-            ParameterError: no such plot, or the run has nothing to draw for it, or no physics.
-        """
-        self.require_physics()
-        # Plots draw runs.
-        from humanwalk.view.plots import PLOTS as DRAWINGS
-
-        figure = DRAWINGS[name](self) if name in DRAWINGS else None
-        if figure is None:
-            allowed = ", ".join(DRAWINGS)
-            raise ParameterError(f"{name}: no such plot, or nothing to draw; allowed: {allowed}; choose another")
-        return figure
 
     @property
     def replay(self) -> Path:
@@ -208,25 +185,22 @@ def require_room(folder: Path, scenario: Scenario) -> None:
         )
 
 
-def measure(outcome: Outcome, scenario_name: str) -> dict[str, Any]:
-    """Everything that summary.json says of a simulation."""
-    summary = summarize(outcome, scenario_name)
-    physics = summary["physics"]
-    summary["gait"] = gait_measures(outcome.signals, steady_from(outcome.scenario)) if physics else None
-    summary["provenance"] = provenance(outcome.scenario, outcome.signals)
-    return summary
+def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: dict[str, Any]) -> Run:
+    """Write a simulation into its folder, each file whole or not at all.
 
+    The summary comes last: a folder that has one is a complete run. A followed recording and its mapping are copied
+    into the folder, and the scenario in the folder follows the copies.
 
-def write_run(path: Path, outcome: Outcome, scenario_name: str) -> Run:
-    """Write scenario, signals and summary of a simulation into its folder, each file whole or not at all.
-
-    The summary comes last: a folder that has one is a complete run. What was followed is copied into the folder, and
-    followed there by whoever reads the run.
+    Args:
+        path: the folder.
+        scenario: what was simulated.
+        signals: the record.
+        summary: its measures, see `humanwalk.measures.summary.summarize`; the provenance is added.
     """
-    summary = measure(outcome, scenario_name)
-    metadata = {b"humanwalk": json.dumps({"scenario": scenario_name} | summary["provenance"]).encode()}
-    signals = outcome.signals.replace_schema_metadata(metadata)
-    write_text(path / SCENARIO, dump_scenario(_keep_followed(path, outcome.scenario)))
+    summary = summary | {"provenance": provenance(scenario, signals)}
+    metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"]} | summary["provenance"]).encode()}
+    signals = signals.replace_schema_metadata(metadata)
+    write_text(path / SCENARIO, dump_scenario(_keep_followed(path, scenario)))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
     write_text(path / SUMMARY, json.dumps(summary, indent=2) + "\n")
     return Run(path)

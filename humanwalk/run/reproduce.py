@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import Run, measure
+from humanwalk.run.folder import Run
 from humanwalk.run.provenance import file_hash, scenario_hash, versions
 from humanwalk.run.simulate import simulate
 
@@ -16,7 +16,7 @@ TOLERANCE = 0.01
 """Measures agree if they differ by no more than this share, or by 1e-3 of their unit."""
 SMALL = 1e-3
 
-NOT_OF_THE_WALK = ("wall_time_s", "realtime_factor", "provenance", "versions", "scenario", "description")
+NOT_OF_THE_WALK = ("wall_time_s", "realtime_factor", "versions", "scenario", "description")
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,8 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     if differ:
         first = min(differ, key=lambda name: differ[name])
         notes.append(f"{len(differ)} signals differ, first {first} at {run.time[differ[first]]:g} s")
-    old_measures = dict(_numbers(measure(replace(again, signals=old, end=run.summary["end"]), "")))
-    new_measures = dict(_numbers(measure(replace(again, end=_end(run, again.end)), "")))
+    old_measures = dict(_numbers(replace(again, signals=old, end=run.summary["end"]).summary()))
+    new_measures = dict(_numbers(replace(again, end=_end(run, again.end)).summary()))
     apart = [
         f"{name}: {new_measures.get(name)} where it was {value}"
         for name, value in old_measures.items()

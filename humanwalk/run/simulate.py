@@ -3,10 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-import pyarrow as pa
 from pydrake.geometry import Meshcat
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
@@ -19,50 +16,12 @@ from humanwalk.diagrams.choose import make_diagram
 from humanwalk.measures.signals import Recorder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
+from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import Scenario
 from humanwalk.view.replay import add_visualizer
 
-if TYPE_CHECKING:
-    from humanwalk.run.folder import Run
-
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A simulation that has ended.
-
-    Attributes:
-        scenario: what was simulated.
-        signals: the record, see `humanwalk.measures.signals`.
-        end: "completed", or why it ended before: "fell", "not a number", "solver failed: ...", "interrupted";
-            "unfinished" at a checkpoint.
-        wall_time: time that the simulation took on the clock [s], without building the diagram.
-    """
-
-    scenario: Scenario
-    signals: pa.Table
-    end: str
-    wall_time: float
-
-    @property
-    def survived(self) -> bool:
-        """Whether the walker was up for the whole duration."""
-        return self.end == "completed"
-
-    def save(self, path: Path | str, name: str = "script") -> "Run":
-        """Write scenario, signals and summary into a new or empty folder, and return the run.
-
-        Raises:
-            ParameterError: the folder holds files already, or cannot be written.
-        """
-        # A run folder holds what a simulation returns.
-        from humanwalk.run.folder import new_run_folder, write_run
-
-        folder = Path(path)
-        new_run_folder(folder, name)
-        return write_run(folder, self, name)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from rich import box
 from rich.table import Table
 
 from humanwalk.files import write_text
-from humanwalk.measures.human_likeness import ANGLES, FEWEST_STRIDES, Array, Comparison, Likeness, compare
+from humanwalk.measures.human_likeness import ANGLES, FEWEST_STRIDES, Comparison, Likeness, compare
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.view.plots import PLOTS

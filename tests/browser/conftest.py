@@ -1,6 +1,6 @@
 import pytest
 
-from humanwalk.run.folder import REPLAY, write_run
+from humanwalk.run.folder import REPLAY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 from humanwalk.view.browser import find_browser
@@ -27,4 +27,4 @@ def short_run(browser, tmp_path_factory):
     folder = tmp_path_factory.mktemp("runs") / "short"
     folder.mkdir()
     (folder / REPLAY).write_text(static_page(meshcat), encoding="utf-8")
-    return write_run(folder, outcome, "thesis")
+    return outcome.write(folder, "thesis")

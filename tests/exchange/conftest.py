@@ -6,8 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from humanwalk.measures.signals import TIME, signal_columns
-from humanwalk.run.folder import write_run
-from humanwalk.run.simulate import Outcome
+from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
 ROWS = 81
@@ -42,4 +41,4 @@ def signals(joints):
 @pytest.fixture(scope="session")
 def run(signals, tmp_path_factory):
     scenario = load_scenario("thesis", {"subject.stature": "1.68", "subject.mass": "61"})
-    return write_run(tmp_path_factory.mktemp("run"), Outcome(scenario, signals, "completed", 1.0), "made up")
+    return Outcome(scenario, signals, "completed", 1.0).write(tmp_path_factory.mktemp("run"), "made up")

@@ -15,8 +15,8 @@ from humanwalk.body.opensim_names import COORDINATES, R_OW, SPINE_COORDINATES
 from humanwalk.cli.main import app
 from humanwalk.exchange import FORMATS, export_run
 from humanwalk.exchange.motion import ground_force, marker_paths
+from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import joint_names
 from humanwalk.quantity import ParameterError
 
 

@@ -20,8 +20,8 @@ from humanwalk.measures.human_likeness import (
     people_com_excursion,
 )
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import GRAVITY, steady_from
-from humanwalk.quantity import ParameterError
+from humanwalk.measures.summary import steady_from
+from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import load_scenario
 
 MASS = 70.0

@@ -8,22 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.measures.signals import TIME, signal_columns
-from humanwalk.measures.summary import (
+from humanwalk.measures.effort import cost_of_transport
+from humanwalk.measures.events import (
     CONTACT_OFF_N,
     CONTACT_ON_N,
-    GRAVITY,
     SHORTEST_PHASE_S,
     contact_with_hysteresis,
-    cost_of_transport,
-    foot_lift,
-    foot_line_error,
-    steady_from,
-    summarize,
     touchdowns,
-    tracking_error,
 )
-from humanwalk.run.simulate import Outcome
+from humanwalk.measures.signals import TIME, signal_columns
+from humanwalk.measures.summary import foot_lift, foot_line_error, steady_from, summarize, tracking_error
+from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import load_scenario
 
 PERIOD = 0.01
@@ -54,7 +49,7 @@ def walk_of(joints, duration=5.0, **changes) -> pa.Table:
 
 
 def summary_of(signals, end="completed", overrides=None):
-    return summarize(Outcome(load_scenario("thesis", overrides), signals, end, wall_time=2.0), "made up")
+    return summarize(load_scenario("thesis", overrides), signals, end, 2.0, "made up")
 
 
 # The whole.

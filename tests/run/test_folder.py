@@ -8,8 +8,8 @@ import pytest
 
 from humanwalk.measures.signals import TIME, signal_columns
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder, write_run
-from humanwalk.run.simulate import Outcome
+from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder
+from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
 
@@ -22,7 +22,7 @@ def outcome(joints):
 
 
 def test_run_that_was_written_is_read_back(outcome, tmp_path):
-    write_run(tmp_path, outcome, "thesis")
+    outcome.write(tmp_path, "thesis")
     run = Run.open(tmp_path)
     assert run.scenario == outcome.scenario
     assert run.signals.equals(outcome.signals)
@@ -37,7 +37,7 @@ def test_run_that_was_written_is_read_back(outcome, tmp_path):
 
 
 def test_signals_know_where_they_come_from(outcome, tmp_path):
-    metadata = json.loads(write_run(tmp_path, outcome, "thesis").signals.schema.metadata[b"humanwalk"])
+    metadata = json.loads(outcome.write(tmp_path, "thesis").signals.schema.metadata[b"humanwalk"])
     assert metadata["scenario"] == "thesis"
     assert metadata["seed"] == 5
     assert {"humanwalk", "drake", "numpy"} <= metadata["versions"].keys()
@@ -45,7 +45,7 @@ def test_signals_know_where_they_come_from(outcome, tmp_path):
 
 @pytest.mark.parametrize("missing", [SCENARIO, SIGNALS, SUMMARY])
 def test_incomplete_folder_is_no_run(outcome, tmp_path, missing):
-    write_run(tmp_path, outcome, "thesis")
+    outcome.write(tmp_path, "thesis")
     (tmp_path / missing).unlink()
     with pytest.raises(ParameterError, match=f"no run, {missing} is missing") as raised:
         Run.open(tmp_path)

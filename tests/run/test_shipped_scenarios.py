@@ -2,7 +2,6 @@
 
 import pytest
 
-from humanwalk.run.folder import write_run
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario, shipped_scenarios
 
@@ -11,7 +10,7 @@ from humanwalk.scenario import load_scenario, shipped_scenarios
 def test_shipped_scenario_walks_for_a_moment(name, tmp_path):
     outcome = simulate(load_scenario(name, {"duration": "0.1"}))
     assert outcome.end == "completed"
-    run = write_run(tmp_path, outcome, name)
+    run = outcome.write(tmp_path, name)
     assert run.summary["survived"] is True
     assert run.summary["external_support"] is (load_scenario(name).controller == "thesis")
     assert run.signals.num_rows == 21

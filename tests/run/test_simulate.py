@@ -11,8 +11,8 @@ from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.choices.start import start_velocities
 from humanwalk.cli.walk import summary_table
 from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.measures.events import SHORTEST_PHASE_S, touchdowns
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import SHORTEST_PHASE_S, summarize, touchdowns
 from humanwalk.quantity import ParameterError
 from humanwalk.run.simulate import prepare, simulate
 from humanwalk.scenario import load_scenario
@@ -68,7 +68,7 @@ def test_speed_is_the_one_that_is_asked_for(walk, strides):
     signals = walk[0].signals
     time, x = signals[TIME].to_numpy()[strides], signals["com.x_m"].to_numpy()[strides]
     assert (x[-1] - x[0]) / (time[-1] - time[0]) == pytest.approx(SPEED, rel=0.05)
-    assert summarize(walk[0], "thesis")["mean_speed_m_s"] == pytest.approx(SPEED, rel=0.05)
+    assert walk[0].summary("thesis")["mean_speed_m_s"] == pytest.approx(SPEED, rel=0.05)
 
 
 def test_pelvis_keeps_to_its_reference(walk):
@@ -153,18 +153,18 @@ def test_feet_alternate_and_are_on_the_ground_about_when_they_should(walk):
 
 
 def test_feet_lift_about_as_high_as_commanded(walk):
-    lift = summarize(walk[0], "thesis")["foot_lift_m"]
+    lift = walk[0].summary("thesis")["foot_lift_m"]
     assert lift["right"] == pytest.approx(0.2, abs=0.02)
     assert lift["left"] == pytest.approx(0.2, abs=0.02)
 
 
 def test_joints_follow_their_desired_angles(walk):
-    errors = summarize(walk[0], "thesis")["tracking_error_rad"]
+    errors = walk[0].summary("thesis")["tracking_error_rad"]
     assert max(errors.values()) < 0.06
 
 
 def test_support_is_reported(walk):
-    summary = summarize(walk[0], "thesis")
+    summary = walk[0].summary("thesis")
     assert summary["external_support"] is True
     assert summary["support_force_rms_N"] > 10.0
     # The record's force is that of a spring-damper which pulls towards the reference, for the most part.
@@ -177,7 +177,7 @@ def test_support_is_reported(walk):
 def test_summary_is_printed_with_the_support(walk, capsys):
     from rich.console import Console
 
-    Console(width=120).print(summary_table(summarize(walk[0], "thesis")))
+    Console(width=120).print(summary_table(walk[0].summary("thesis")))
     shown = capsys.readouterr().out
     assert "EXTERNAL SUPPORT" in shown
     assert "cost of transport" in shown
@@ -202,7 +202,7 @@ def test_walker_without_support_falls_and_its_record_is_kept(fall):
 
 
 def test_fall_is_summarised(fall):
-    summary = summarize(fall, "thesis")
+    summary = fall.summary("thesis")
     assert summary["survived"] is False
     assert summary["fall_time_s"] == pytest.approx(fall.signals[TIME][-1].as_py())
     assert summary["external_support"] is False
@@ -236,13 +236,13 @@ def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypat
     assert outcome.end.startswith("solver failed:")
     assert len(outcome.end.splitlines()) == 1
     assert outcome.signals[TIME].to_numpy()[-1] == pytest.approx(0.05, abs=0.006)
-    summary_table(summarize(outcome, "thesis"))
+    summary_table(outcome.summary("thesis"))
 
 
 def test_run_of_one_row_has_a_summary():
     outcome = simulate(thesis(0.001))
     assert outcome.survived
-    summary_table(summarize(outcome, "thesis"))
+    summary_table(outcome.summary("thesis"))
 
 
 def test_scenario_that_cannot_be_simulated_is_refused():

@@ -11,8 +11,7 @@ from PIL import Image, ImageFilter
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, people
 from humanwalk.measures.signals import TIME, signal_columns
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import write_run
-from humanwalk.run.simulate import Outcome
+from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 from humanwalk.view.plots import PLOTS, write_gait_figures, write_plots
 from humanwalk.view.plots.drawing import SIDE
@@ -58,7 +57,7 @@ def make_run(tmp_path, joints):
         outcome = Outcome(load_scenario("thesis", overrides), signals, "completed", wall_time=1.0)
         folder = tmp_path / f"run_{duration}_{supported}"
         folder.mkdir()
-        return write_run(folder, outcome, "made up")
+        return outcome.write(folder, "made up")
 
     return make
 

@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.gait_measures import footfalls
-from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, Array, over_strides, people
+from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, over_strides, people
+from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
     LABEL_SIZE,

@@ -9,9 +9,10 @@ from matplotlib.patches import Rectangle
 
 from humanwalk.body import REFERENCE_STATURE, SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.measures.events import CONTACT_ON_N, foot_contact
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import CONTACT_ON_N, GRAVITY, foot_contact
 from humanwalk.numerics import Array
+from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import INK, SIDE, curve, label, legend, level, new_figure, true_proportions
 

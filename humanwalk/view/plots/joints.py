@@ -8,15 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side, human
+from humanwalk.measures.effort import joint_names
+from humanwalk.measures.events import touchdowns
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import joint_names, touchdowns
+from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
     LABEL_SIZE,
     REFERENCE,
     SIDE,
     TICK_SIZE,
-    Array,
     curve,
     label,
     legend,

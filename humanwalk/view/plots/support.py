@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from matplotlib.figure import Figure
 
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import GRAVITY
+from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import AXIS_COLORS, curve, label, level, new_figure
 

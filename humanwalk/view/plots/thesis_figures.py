@@ -9,8 +9,8 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from humanwalk.body import Side
+from humanwalk.measures.events import foot_contact
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import foot_contact
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import DESIRED, SIDE, Array, curve, label, legend, level, new_figure, shade
 

@@ -1,4 +1,4 @@
-"""Writes the plots of a run into its folder."""
+"""Draws plots of a run, and writes them into its folder."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -27,6 +27,20 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "tracking_error": tracking_error,
 }
 """Every plot by name, which is also its file's; a function returns None where the run has nothing to draw."""
+
+
+def plot(run: Run, name: str) -> Figure:
+    """Draw a plot of a run by its name, one of `PLOTS`, as a matplotlib figure; a notebook shows it.
+
+    Raises:
+        ParameterError: no such plot, a run that has nothing to draw for it, or a run without physics.
+    """
+    run.require_physics()
+    figure = PLOTS[name](run) if name in PLOTS else None
+    if figure is None:
+        allowed = ", ".join(PLOTS)
+        raise ParameterError(f"{name}: no such plot, or nothing to draw; allowed: {allowed}; choose another")
+    return figure
 
 
 def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png") -> list[Path]:

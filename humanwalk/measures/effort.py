@@ -1,0 +1,61 @@
+"""Torque, work and cost of transport of the joints."""
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.quantity import GRAVITY
+
+
+def joint_names(signals: pa.Table) -> list[str]:
+    """The actuated joints of a record, in actuator order."""
+    ending = ".torque_N_m"
+    return [name.removesuffix(ending) for name in signals.column_names if name.endswith(ending)]
+
+
+def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:
+    """Mechanical cost of transport: time integral of sum |tau w| over m g d, nothing regained.
+
+    Args:
+        signals: the record.
+        rows: which rows count.
+        mass: of the body [kg].
+    """
+    if rows.sum() < 2:
+        return None
+    time = signals[TIME].to_numpy()[rows]
+    x = signals["com.x_m"].to_numpy()[rows]
+    names = joint_names(signals)
+    power = np.abs(
+        matrix(signals, [f"{name}.torque_N_m" for name in names])
+        * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
+    ).sum(axis=1)
+    distance = x[-1] - x[0]
+    return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
+
+
+def joint_work(signals: pa.Table, touchdowns: npt.NDArray[np.int_]) -> dict[str, dict[str, float]] | None:
+    """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
+
+    Args:
+        signals: the record.
+        touchdowns: rows at which a stride ends and the next begins.
+
+    Returns:
+        The work by joint, None without a stride.
+    """
+    strides = len(touchdowns) - 1
+    if strides < 1:
+        return None
+    rows = slice(touchdowns[0], touchdowns[-1] + 1)
+    time = signals[TIME].to_numpy()[rows]
+    names = joint_names(signals)
+    power = matrix(signals, [f"{name}.torque_N_m" for name in names])[rows]
+    power = power * matrix(signals, [f"{name}.velocity_rad_s" for name in names])[rows]
+    positive = np.trapezoid(np.maximum(power, 0.0), time, axis=0) / strides
+    negative = np.trapezoid(np.minimum(power, 0.0), time, axis=0) / strides
+    return {
+        name: {"positive": float(delivered), "negative": float(absorbed)}
+        for name, delivered, absorbed in zip(names, positive, negative, strict=True)
+    }

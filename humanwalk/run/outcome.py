@@ -1,0 +1,52 @@
+"""What a simulation returns."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from humanwalk.measures.summary import summarize
+from humanwalk.run.folder import Run, new_run_folder, write_run
+from humanwalk.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A simulation that has ended.
+
+    Attributes:
+        scenario: what was simulated.
+        signals: the record, see `humanwalk.measures.signals`.
+        end: "completed", or why it ended early: "fell", "not a number", "solver failed: ...", "interrupted";
+            "unfinished" at a checkpoint.
+        wall_time: wall-clock time of the simulation [s], without building the diagram.
+    """
+
+    scenario: Scenario
+    signals: pa.Table
+    end: str
+    wall_time: float
+
+    @property
+    def survived(self) -> bool:
+        """Whether the walker was up for the whole duration."""
+        return self.end == "completed"
+
+    def summary(self, name: str = "script") -> dict[str, Any]:
+        """The measures, under the name of the scenario; see `humanwalk.measures.summary.summarize`."""
+        return summarize(self.scenario, self.signals, self.end, self.wall_time, name)
+
+    def write(self, folder: Path, name: str = "script") -> Run:
+        """Write scenario, signals and summary into a folder that is there; see `humanwalk.run.folder.write_run`."""
+        return write_run(folder, self.scenario, self.signals, self.summary(name))
+
+    def save(self, path: Path | str, name: str = "script") -> Run:
+        """Write scenario, signals and summary into a new or empty folder, and return the run.
+
+        Raises:
+            ParameterError: the folder holds files already, or cannot be written.
+        """
+        folder = Path(path)
+        new_run_folder(folder, name)
+        return self.write(folder, name)
