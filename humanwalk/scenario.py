@@ -33,7 +33,6 @@ from humanwalk.control.whole_body_qp import WholeBodyParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
-from humanwalk.motion.recorded_motion import FollowParameters
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.walking.command import CommandParameters
 from humanwalk.walking.push import PushParameters
@@ -127,6 +126,24 @@ class BalancedWalkParameters:
 
     leg_contact: bool = True
     """Whether one leg stops the other; else they pass through each other."""
+
+
+@dataclass(frozen=True)
+class FollowParameters:
+    """A recording whose joint angles are followed instead of the gait's."""
+
+    file: str = ""
+    """A .mot, .sto or .csv file with joint angles, beside the scenario's if not elsewhere; none: the gait is walked."""
+
+    mapping: str = ""
+    """A YAML file, beside the scenario's as well, that says which column is which joint and in what unit
+    (`MotionMapping`); none: by name."""
+
+    kinematic: bool = False
+    """Show the recording as it is, without physics: no forces, no torques, no balance."""
+
+    ease_in: float = quantity(0.3, "s", 0.0, 5.0)
+    """Time over which the recording gets up to speed, since the body starts at rest."""
 
 
 @dataclass(frozen=True)

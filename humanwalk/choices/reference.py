@@ -1,6 +1,7 @@
 """The walking reference: gait, arm swing, inverse kinematics, interpolation; shared by walker and playback."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from pydrake.systems.framework import DiagramBuilder
 
@@ -8,10 +9,13 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.gait.arm_swing import arm_joints
 from humanwalk.gait.walking_gait import WalkingGait
-from humanwalk.scenario import Scenario
+from humanwalk.motion.followed import followed_motion
+from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion
+from humanwalk.scenario import Scenario, load_as
 from humanwalk.systems.arm_swing_source import ArmSwingSource
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
+from humanwalk.terrain import Plane
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,13 @@ def make_gait(scenario: Scenario) -> WalkingGait:
     skeleton = scenario.subject.skeleton
     gait = scenario.gait
     return WalkingGait(gait.path, skeleton.hip_half_width, gait.ramp, gait.first_swing)
+
+
+def make_recorded_motion(scenario: Scenario) -> RecordedMotion:
+    """The recording of `scenario.follow`, as motion of the scenario's body."""
+    follow = scenario.follow
+    mapping = load_as(MotionMapping, Path(follow.mapping)) if follow.mapping else MotionMapping()
+    return followed_motion(Path(follow.file), mapping, scenario.subject, Plane(), follow.ease_in)
 
 
 def add_walking_reference(builder: DiagramBuilder, scenario: Scenario) -> WalkingReference:

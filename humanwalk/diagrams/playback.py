@@ -6,9 +6,8 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
-from humanwalk.choices.reference import add_walking_reference
+from humanwalk.choices.reference import add_walking_reference, make_recorded_motion
 from humanwalk.choices.start import require_reachable
-from humanwalk.motion.followed import followed_motion
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
@@ -48,7 +47,7 @@ def make_playback(scenario: Scenario) -> Diagram:
     to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
 
     if scenario.follow.file:
-        source = builder.AddNamedSystem("recording", RecordedPostureSource(followed_motion(scenario)))
+        source = builder.AddNamedSystem("recording", RecordedPostureSource(make_recorded_motion(scenario)))
         pelvis, desired_state = source.GetOutputPort("pelvis_reference"), source.GetOutputPort("desired_state")
     else:
         reference = add_walking_reference(builder, scenario)

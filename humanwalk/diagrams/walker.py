@@ -8,11 +8,10 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from humanwalk.body.joint_map import base_first_mass_matrix
 from humanwalk.body.plant import Subject
 from humanwalk.choices.contact import FootContact, add_foot_contact, connect_spatial_forces
-from humanwalk.choices.reference import add_walking_reference
+from humanwalk.choices.reference import add_walking_reference, make_recorded_motion
 from humanwalk.choices.start import require_reachable, start_positions
 from humanwalk.choices.world import HumanPlant, add_human_plant
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
-from humanwalk.motion.followed import followed_motion
 from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -126,7 +125,7 @@ class _Reference:
 
 def _add_recording(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant, bank: PdActuatorBank) -> _Reference:
     """Add the recording that the scenario follows; the plant starts where it does."""
-    motion = followed_motion(scenario)
+    motion = make_recorded_motion(scenario)
     human.plant.SetDefaultPositions(start_positions(scenario, motion))
     source = builder.AddNamedSystem("recording", RecordedPostureSource(motion))
     builder.Connect(source.GetOutputPort("desired_state"), bank.GetInputPort("desired_state"))

@@ -1,21 +1,42 @@
-"""Recorded motion as a table over time: read from OpenSim's .mot and .sto and from .csv, written as .mot and .sto."""
+"""Recorded motion as a table over time: read from OpenSim's .mot and .sto and from .csv, written as .mot and .sto.
+
+A recording may come from anybody: time and memory to read one are bounded by its size, and a file that cannot be used
+gives a one-line error.
+"""
 
 import csv
 import io
+import itertools
 import math
-from collections.abc import Sequence
+from array import array
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from humanwalk.files import read_regular
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 
-LARGEST_FILE = 200_000_000
-"""Of a recording [bytes]; an hour of 50 channels at 100 Hz has 180 MB."""
+MAX_BYTES = 50_000_000
+"""Largest recording; a quarter of an hour of 50 channels at 100 Hz has 45 MB."""
+
+MAX_LINE = 100_000
+MAX_COLUMNS = 2_000
+MAX_ROWS = 100_000
+"""Longest line in characters, and largest table; a quarter of an hour at 100 Hz has 90,000 rows."""
+
+MAX_NUMBER = 1e10
+"""Largest magnitude of a number, in any unit; seconds since 1970 are below it."""
+
+MIN_TIME_STEP = 1e-4
+"""Shortest time between two rows [s]; motion capture runs at up to 10 kHz."""
 
 FORMATS = (".mot", ".sto", ".csv")
+
+TIME_NAMES = ("time", "time_s")
 
 
 @dataclass(frozen=True)
@@ -23,10 +44,10 @@ class MotionTable:
     """Named columns over time.
 
     Attributes:
-        columns: names, without time.
+        columns: Names, without time.
         time: [s], increasing, shape (rows,).
-        data: shape (rows, columns).
-        in_degrees: whether angles are in degrees; None where the file does not say (a .csv).
+        data: Shape (rows, columns).
+        in_degrees: Whether angles are in degrees; None where the file does not specify it (a .csv).
     """
 
     columns: tuple[str, ...]
@@ -35,13 +56,13 @@ class MotionTable:
     in_degrees: bool | None
 
     def column(self, name: str) -> Array:
-        """One column, shape (rows,) (ValueError if there is none)."""
+        """One column, shape (rows,) (ValueError if it does not exist)."""
         values: Array = self.data[:, self.columns.index(name)]
         return values
 
 
 def storage_text(name: str, table: MotionTable) -> str:
-    """A table as OpenSim's storage file, version 1: numbers with 12 digits."""
+    """A table as OpenSim's storage file, version 1, with 12 significant digits."""
     assert table.in_degrees is not None
     head = (
         f"{name}\nversion=1\nnRows={table.time.size}\nnColumns={len(table.columns) + 1}\n"
@@ -54,83 +75,135 @@ def storage_text(name: str, table: MotionTable) -> str:
 
 
 def read_motion_table(path: Path) -> MotionTable:
-    """Read a .mot, .sto or .csv file whose first column, or one called time or time_s, is time [s].
+    """Read a .mot, .sto or .csv file; time [s] is the column named time or time_s, else the first.
 
     Raises:
-        ParameterError: it cannot be read, or a number in it cannot be used; with the line.
+        ParameterError: The file cannot be read, or a value in it cannot be used; the message has the line number.
     """
     if path.suffix.lower() not in FORMATS:
-        raise ParameterError(f"{path}: unknown kind of recording; allowed: {', '.join(FORMATS)}; convert it to one")
+        raise ParameterError(f"{path}: unknown recording format; allowed: {', '.join(FORMATS)}; convert the file")
+    content = read_regular(path, MAX_BYTES)
     try:
-        if path.exists() and not (path.is_file() or path.is_dir()):
-            # A pipe or a device may never end.
-            raise ParameterError(f"{path}: is no file; allowed: a recording that can be read")
-        if path.stat().st_size > LARGEST_FILE:
-            raise ParameterError(f"{path}: too large; allowed: up to {LARGEST_FILE // 10**6} MB; cut or thin it out")
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise ParameterError(f"{path}: {error.strerror or error}; allowed: a recording that can be read") from None
-    except ParameterError:
-        raise
-    except ValueError:
-        # Not UTF-8, or a path that holds a zero.
-        raise ParameterError(f"{str(path)!r}: is not text; allowed: {', '.join(FORMATS)}") from None
-    lines = text.splitlines()
-    if path.suffix.lower() == ".csv":
-        return _parse(path, lines, 0, None, ",")
-    head = next((i for i, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
-    if head is None:
-        raise ParameterError(f"{path}: no line `endheader`; allowed: an OpenSim storage file; is it a .csv?")
-    flags = {key.strip().lower(): value.strip().lower() for key, _, value in (s.partition("=") for s in lines[:head])}
-    return _parse(path, lines, head + 1, flags.get("indegrees") == "yes", None)
+        return parse_motion_table(content, str(path), is_csv=path.suffix.lower() == ".csv")
+    except UnicodeDecodeError:
+        raise ParameterError(f"{path}: not UTF-8 text; allowed: {', '.join(FORMATS)}; convert the file") from None
 
 
-def _parse(path: Path, lines: list[str], first: int, in_degrees: bool | None, delimiter: str | None) -> MotionTable:
-    def split(line: str) -> list[str]:
-        if delimiter is None:
-            # Older OpenSim files separate by spaces.
-            return [cell.strip() for cell in (line.split("\t") if "\t" in line else line.split())]
-        return [cell.strip() for cell in next(csv.reader([line]))]
+def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTable:
+    """Parse the content of a .csv file, or of a .mot or .sto file.
 
-    numbered = [(i + 1, line) for i, line in enumerate(lines) if i >= first and line.strip()]
-    if len(numbered) < 3:
-        raise ParameterError(f"{path}: fewer than two rows of numbers; allowed: a line of names and two rows or more")
-    names = split(numbered[0][1])
-    doubled = next((name for name in names if names.count(name) > 1), None)
-    if doubled is not None:
-        raise ParameterError(f"{path}: column {doubled!r} comes twice; allowed: every name once; rename one")
-    data = np.empty((len(numbered) - 1, len(names)))
-    for row, (number, line) in enumerate(numbered[1:]):
-        cells = split(line)
+    Args:
+        content: UTF-8 text.
+        name: Name of the file, for messages.
+        is_csv: Whether it is comma-separated without a header; else it is an OpenSim storage file.
+
+    Raises:
+        ParameterError: See `read_motion_table`.
+        UnicodeDecodeError: The content is not UTF-8.
+    """
+    lines = _lines(content, name)
+    in_degrees = None if is_csv else _read_header(lines, name)
+    rows = ((number, _split(line, is_csv)) for number, line in lines if line.strip())
+    number, names = next(rows, (0, []))
+    _check_names(names, f"{name}: line {number}")
+    time_column = next((names.index(candidate) for candidate in TIME_NAMES if candidate in names), 0)
+    data = array("d")
+    for row, (number, cells) in enumerate(rows):
+        place = f"{name}: line {number}"
+        if row == MAX_ROWS:
+            raise ParameterError(f"{place}: more than {MAX_ROWS} rows; allowed: up to that; shorten or thin it out")
         if len(cells) != len(names):
-            raise ParameterError(f"{path}: line {number} has {len(cells)} numbers; allowed: {len(names)}, one a column")
-        for i, cell in enumerate(cells):
-            data[row, i] = _number(path, number, names[i], cell)
-    place = next((names.index(name) for name in ("time", "time_s") if name in names), 0)
-    time = data[:, place]
-    backwards = np.flatnonzero(np.diff(time) <= 0)
-    if backwards.size:
-        row = int(backwards[0]) + 1
-        raise ParameterError(
-            f"{path}: line {numbered[row + 1][0]}: {names[place]} {time[row]:g} does not come after {time[row - 1]:g}; "
-            "allowed: increasing times [s]; sort the rows, and remove doubled ones"
-        )
-    columns = tuple(name for i, name in enumerate(names) if i != place)
-    return MotionTable(columns, time, np.delete(data, place, axis=1), in_degrees)
+            raise ParameterError(f"{place} has {len(cells)} numbers; allowed: {len(names)}, one per column")
+        data.extend(_numbers(cells, names, place))
+        _check_time(data, time_column, len(names), f"{place}: {brief(names[time_column])}")
+    if len(data) < 2 * len(names) or not names:
+        raise ParameterError(f"{name}: fewer than two rows of numbers; allowed: a row of names, then at least two")
+    table = np.frombuffer(data).reshape(-1, len(names))
+    columns = tuple(column for i, column in enumerate(names) if i != time_column)
+    return MotionTable(columns, table[:, time_column].copy(), np.delete(table, time_column, axis=1), in_degrees)
 
 
-def _number(path: Path, line: int, column: str, cell: str) -> float:
+def _lines(content: bytes, name: str) -> Iterator[tuple[int, str]]:
+    """Lines of UTF-8 text with their numbers from 1, decoded one at a time."""
+    file = io.TextIOWrapper(io.BytesIO(content), encoding="utf-8-sig", newline=None)
+    for number in itertools.count(1):
+        line = file.readline(MAX_LINE + 1)
+        if not line:
+            return
+        if len(line) > MAX_LINE:
+            raise ParameterError(f"{name}: line {number} has over {MAX_LINE} characters; allowed: up to that; split it")
+        yield number, line
+
+
+def _read_header(lines: Iterator[tuple[int, str]], name: str) -> bool:
+    """Read an OpenSim header up to its last line; returns whether it states degrees."""
+    in_degrees = False
+    for _, line in lines:
+        key, _, value = (word.strip().lower() for word in line.partition("="))
+        if key == "endheader":
+            return in_degrees
+        if key == "indegrees":
+            in_degrees = value == "yes"
+    raise ParameterError(f"{name}: no line `endheader`; allowed: an OpenSim storage file; rename a table to .csv")
+
+
+def _split(line: str, is_csv: bool) -> list[str]:
+    if is_csv:
+        return [cell.strip() for cell in next(csv.reader([line]))]
+    # Older OpenSim files separate by spaces.
+    return [cell.strip() for cell in line.rstrip("\n").split("\t")] if "\t" in line else line.split()
+
+
+def _check_names(names: Sequence[str], place: str) -> None:
+    if len(names) > MAX_COLUMNS:
+        raise ParameterError(f"{place} has {len(names)} columns; allowed: up to {MAX_COLUMNS}; remove some")
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise ParameterError(f"{place}: column {brief(name)!r} occurs twice; allowed: unique names; rename one")
+        if not name.isprintable():
+            raise ParameterError(f"{place}: column {brief(name)!r}: control character; allowed: printable names")
+
+
+def _check_time(data: Sequence[float], column: int, columns: int, place: str) -> None:
+    """Check the time of the last row against the row before."""
+    if len(data) > columns:
+        before, time = data[column - 2 * columns], data[column - columns]
+        if time <= before:
+            raise ParameterError(
+                f"{place} {time:g} is not after {before:g}; allowed: increasing times [s]; sort the rows, remove "
+                "duplicates"
+            )
+        if time - before < MIN_TIME_STEP:
+            raise ParameterError(
+                f"{place} {time:g} is less than {MIN_TIME_STEP:g} s after {before:g}; allowed: seconds; remove a row"
+            )
+
+
+def _numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[float]:
+    """Values of one row."""
+    values = [_number(cell) for cell in cells]
+    for name, cell, value in zip(names, cells, values, strict=True):
+        # Also refuses NaN.
+        if not abs(value) <= MAX_NUMBER:
+            raise ParameterError(
+                f"{place}, column {brief(name)}: {cell[:20]!r} is not a number; allowed: finite numbers up to "
+                f"{MAX_NUMBER:g}; fill the gap"
+            )
+    return values
+
+
+def _number(cell: str) -> float:
     try:
-        value = float(cell)
+        return float(cell)
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ParameterError(
-            f"{path}: line {line}, column {column}: {cell[:20]!r} is no number; allowed: finite numbers; fill the gap"
-        )
-    return value
+        return math.nan
 
 
-def nearest_names(names: Sequence[str]) -> str:
-    """The first names of many, for a message."""
-    return ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+def brief(name: str) -> str:
+    """A column name of at most 40 characters, for a message."""
+    return name if len(name) <= 40 else name[:37] + "..."
+
+
+def first_names(names: Sequence[str]) -> str:
+    """The first eight column names, for a message."""
+    return ", ".join(map(brief, names[:8])) + (", ..." if len(names) > 8 else "")

@@ -10,8 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from humanwalk.body.opensim_names import COORDINATES
+from humanwalk.choices.reference import make_recorded_motion
 from humanwalk.cli.main import app, main
-from humanwalk.motion.followed import NEEDED, followed_motion
+from humanwalk.motion.followed import REQUIRED_JOINTS
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -25,7 +26,7 @@ TIME = np.arange(0, 0.301, 0.02)
 
 def bend(knee=20.0):
     """Knees bend by some degrees within 0.3 s; OpenSim's names."""
-    columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in NEEDED}
+    columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in REQUIRED_JOINTS}
     for side in "rl":
         columns[f"knee_angle_{side}"] = knee * TIME / TIME[-1]
     return columns
@@ -162,7 +163,7 @@ def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
 
 def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
     run, _ = kinematic
-    motion = followed_motion(run.scenario)
+    motion = make_recorded_motion(run.scenario)
     for row in (0, 20, -1):
         angles, rates = motion.joints(run.time[row])
         for i, name in enumerate(joints.names):
@@ -226,13 +227,13 @@ def test_angle_beyond_its_range_is_moved_and_told_in_a_line(tmp_path, caplog, jo
     columns = bend() | {"knee_angle_r": np.full_like(TIME, -3.0), "Head_Motion": np.full_like(TIME, 1.0)}
     scenario = load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", columns))})
     with caplog.at_level(logging.WARNING):
-        motion = followed_motion(scenario)
+        motion = make_recorded_motion(scenario)
     (record,) = caplog.records
     said = record.getMessage()
     knee = joints.names.index("RightLegTibiaMotion")
     moved = np.rad2deg(joints.lower[knee] - np.deg2rad(-3.0))
     assert said == (
-        f"{tmp_path}/t.mot: beyond the range of joints, moved to its end: RightLegTibiaMotion by up to {moved:.2g} deg"
+        f"{tmp_path}/t.mot: angles clipped to the range of their joints: RightLegTibiaMotion by up to {moved:.2g} deg"
     )
     np.testing.assert_array_equal(motion.angles[:, knee], joints.lower[knee])
 
@@ -245,11 +246,11 @@ def test_command_tells_it_in_one_line_of_its_own(tmp_path, monkeypatch, capfd):
         main()
     assert not end.value.code
     (line,) = (line for line in capfd.readouterr().err.splitlines() if "range" in line)
-    assert line.startswith(f"humanwalk: {recording}: beyond the range of joints")
+    assert line.startswith(f"humanwalk: {recording}: angles clipped")
     assert logging.getLogger("humanwalk").propagate
 
 
 def test_angles_within_their_ranges_are_not_spoken_of(tmp_path, caplog):
     with caplog.at_level(logging.WARNING):
-        followed_motion(load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", bend()))}))
+        make_recorded_motion(load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", bend()))}))
     assert caplog.records == []

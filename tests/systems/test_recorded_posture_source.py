@@ -47,7 +47,7 @@ def test_samples_are_met_after_the_ease_in(ease_in):
     for row in (20, 33, 50):
         found = at(source, recorded.time[row] + 0.5 * ease_in)
         np.testing.assert_allclose(found["desired_state"][:N], recorded.angles[row], atol=1e-9)
-        np.testing.assert_allclose(found["p_WP"], recorded.pelvis_place[row], atol=1e-9)
+        np.testing.assert_allclose(found["p_WP"], recorded.pelvis_position[row], atol=1e-9)
 
 
 @pytest.mark.parametrize("time", [0.05, 0.2, 0.37, 0.71, 1.11])

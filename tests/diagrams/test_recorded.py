@@ -1,0 +1,64 @@
+"""Playback and walker that follow a recording."""
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.opensim_names import COORDINATES
+from humanwalk.choices.reference import make_recorded_motion
+from humanwalk.diagrams.playback import make_playback
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.motion.followed import REQUIRED_JOINTS
+from humanwalk.motion.motion_table import MotionTable, storage_text
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario
+
+TIME = np.arange(0, 1.001, 0.02)
+
+
+@pytest.fixture
+def squat_file(tmp_path):
+    """Hips, knees and ankles bend together, so that the soles stay level; OpenSim's names, degrees."""
+    bend = np.rad2deg(0.6 * np.sin(0.5 * np.pi * TIME) ** 2)
+    columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in REQUIRED_JOINTS}
+    for side in "rl":
+        columns |= {f"hip_flexion_{side}": bend, f"knee_angle_{side}": 2 * bend, f"ankle_angle_{side}": bend}
+    table = MotionTable(tuple(columns), TIME, np.column_stack(list(columns.values())), True)
+    (tmp_path / "squat.mot").write_text(storage_text("t", table))
+    return tmp_path / "squat.mot"
+
+
+def following(path, **changes):
+    return load_scenario("thesis", {"follow.file": str(path)} | changes)
+
+
+def test_balance_levels_do_not_go_with_a_recording(squat_file):
+    with pytest.raises(ParameterError, match="joint by joint"):
+        following(squat_file, **{"balance.upper_body.enabled": "true"})
+
+
+def test_playback_shows_the_recording_exactly(squat_file, joints):
+    scenario = following(squat_file)
+    playback = make_playback(scenario)
+    motion = make_recorded_motion(scenario)
+    context = playback.CreateDefaultContext()
+    context.SetTime(0.8)
+    angles, _ = motion.joints(0.8)
+    np.testing.assert_allclose(playback.GetOutputPort("desired_state").Eval(context)[:42], angles)
+    np.testing.assert_allclose(playback.GetOutputPort("state").Eval(context)[joints.q], angles)
+
+
+def test_walker_follows_the_recording_with_the_support(squat_file, joints):
+    """Through the PD bank, against gravity: half a second of bending the knees."""
+    scenario = following(squat_file)
+    walker = make_walker(scenario)
+    simulator = Simulator(walker)
+    simulator.AdvanceTo(0.6)
+    context = simulator.get_context()
+    state = walker.GetOutputPort("state").Eval(context)
+    wanted, _ = make_recorded_motion(scenario).joints(0.6)
+    assert wanted[joints.names.index(LEGS["Right"].knee)] > 0.3
+    np.testing.assert_allclose(joints.positions(state), wanted, atol=0.05)
+    np.testing.assert_allclose(state[4:7], walker.GetOutputPort("pelvis_reference").Eval(context)[4:7], atol=0.03)
+    np.testing.assert_allclose(walker.GetOutputPort("desired_state").Eval(context)[:42], wanted, atol=1e-9)
