@@ -38,7 +38,7 @@ PENDING: dict[str, dict[str, str]] = {
         "systems/inverse_kinematics_solver.py systems/whole_body_controller.py",
         "h4": "control/pd_control.py systems/balance_support.py systems/body_observer.py systems/playback_state.py",
         "h5": "measures/human_likeness.py run/monitor.py",
-        "h6": "motion/followed.py view/plots/joints.py view/plots/thesis_figures.py view/replay.py",
+        "h6": "view/plots/joints.py view/plots/thesis_figures.py view/replay.py",
     },
     "size": {
         "founder": "scenario.py",

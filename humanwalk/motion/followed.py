@@ -22,7 +22,7 @@ from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.motion.motion_table import MotionTable, brief, first_names, read_motion_table
 from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion, pelvis_rotation
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, did_you_mean
+from humanwalk.quantity import ParameterError, did_you_mean, printable
 from humanwalk.terrain import Terrain
 
 logger = logging.getLogger(__name__)
@@ -64,7 +64,7 @@ def followed_motion(
     Raises:
         ParameterError: The recording or its mapping cannot be used; one line with the fix.
     """
-    columns = _Columns(read_motion_table(file), mapping, str(file))
+    columns = _Columns(read_motion_table(file), mapping, printable(file))
     plant = kinematics_plant(subject)
     joints = JointMap.of(plant)
     known = (*joints.names, *PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS)
@@ -161,7 +161,7 @@ class _Columns:
         if mapped.column not in self.table.columns:
             column = brief(mapped.column)
             raise ParameterError(
-                f"{self._file}: no column {column!r}, which the mapping has for {name}; found: "
+                f"{self._file}: no column {column}, which the mapping has for {name}; found: "
                 f"{first_names(self.table.columns)}{did_you_mean(column, [*map(brief, self.table.columns)])}"
             )
         return mapped.scale * self.table.column(mapped.column) + mapped.offset, mapped.column

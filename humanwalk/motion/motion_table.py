@@ -18,7 +18,7 @@ import numpy as np
 
 from humanwalk.files import read_regular
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
 
 MAX_BYTES = 50_000_000
 """Largest recording; a quarter of an hour of 50 channels at 100 Hz has 45 MB."""
@@ -80,13 +80,13 @@ def read_motion_table(path: Path) -> MotionTable:
     Raises:
         ParameterError: The file cannot be read, or a value in it cannot be used; the message has the line number.
     """
-    if path.suffix.lower() not in FORMATS:
-        raise ParameterError(f"{path}: unknown recording format; allowed: {', '.join(FORMATS)}; convert the file")
-    content = read_regular(path, MAX_BYTES)
+    name, suffix = printable(path), path.suffix.lower()
+    if suffix not in FORMATS:
+        raise ParameterError(f"{name}: unknown recording format; allowed: {', '.join(FORMATS)}; convert the file")
     try:
-        return parse_motion_table(content, str(path), is_csv=path.suffix.lower() == ".csv")
+        return parse_motion_table(read_regular(path, MAX_BYTES), name, is_csv=suffix == ".csv")
     except UnicodeDecodeError:
-        raise ParameterError(f"{path}: not UTF-8 text; allowed: {', '.join(FORMATS)}; convert the file") from None
+        raise ParameterError(f"{name}: not UTF-8 text; allowed: {', '.join(FORMATS)}; convert the file") from None
 
 
 def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTable:
@@ -159,9 +159,7 @@ def _check_names(names: Sequence[str], place: str) -> None:
         raise ParameterError(f"{place} has {len(names)} columns; allowed: up to {MAX_COLUMNS}; remove some")
     for name, count in Counter(names).items():
         if count > 1:
-            raise ParameterError(f"{place}: column {brief(name)!r} occurs twice; allowed: unique names; rename one")
-        if not name.isprintable():
-            raise ParameterError(f"{place}: column {brief(name)!r}: control character; allowed: printable names")
+            raise ParameterError(f"{place}: column {brief(name)} occurs twice; allowed: unique names; rename one")
 
 
 def _check_time(data: Sequence[float], column: int, columns: int, place: str) -> None:
@@ -186,8 +184,8 @@ def _numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[flo
         # Also refuses NaN.
         if not abs(value) <= MAX_NUMBER:
             raise ParameterError(
-                f"{place}, column {brief(name)}: {cell[:20]!r} is not a number; allowed: finite numbers up to "
-                f"{MAX_NUMBER:g}; fill the gap"
+                f"{place}, column {brief(name)}: '{printable(cell, 20)}' is not a number; allowed: finite numbers "
+                f"up to {MAX_NUMBER:g}; fill the gap"
             )
     return values
 
@@ -200,8 +198,8 @@ def _number(cell: str) -> float:
 
 
 def brief(name: str) -> str:
-    """A column name of at most 40 characters, for a message."""
-    return name if len(name) <= 40 else name[:37] + "..."
+    """A name from a file for a message: at most 40 printable characters."""
+    return printable(name, 40)
 
 
 def first_names(names: Sequence[str]) -> str:
