@@ -1,6 +1,6 @@
 # Every target sets up what it needs: a Python, .venv, the packages of requirements.lock.
 .DEFAULT_GOAL := help
-.PHONY: help walk test lint docs gallery lock clean
+.PHONY: help walk test coverage lint docs gallery lock clean
 
 BIN := .venv/bin
 ARGS ?=
@@ -16,10 +16,13 @@ walk: .venv/.installed ## Simulate a walk and write its run folder; options go i
 test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
 	@DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 $(BIN)/pytest $(PYTEST_ARGS)
 
+coverage: .venv/.installed ## Run the tests and print the share of humanwalk/ that they execute
+	@DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 $(BIN)/pytest --cov $(PYTEST_ARGS)
+
 lint: .venv/.installed ## Check style, types and the import rule
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy -p humanwalk
+	$(BIN)/mypy
 	$(BIN)/lint-imports
 
 docs: .venv/.installed ## Build the book into build/docs; asks no other host
@@ -33,7 +36,7 @@ lock: .venv/.installed ## Choose the newest versions that pyproject.toml allows
 		--python-version 3.12 --group dev --group docs --output-file requirements.lock pyproject.toml
 
 clean: ## Remove .venv, caches and builds; keep runs
-	rm -rf .venv build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf .venv build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .coverage* .import_linter_cache
 	find humanwalk tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .venv/.installed: pyproject.toml requirements.lock
