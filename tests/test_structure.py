@@ -36,7 +36,6 @@ PENDING: dict[str, dict[str, str]] = {
         "h2": "systems/push_source.py walking/push.py",
         "h3": "control/body_dynamics.py control/whole_body_qp.py gait/arm_swing.py "
         "systems/inverse_kinematics_solver.py systems/whole_body_controller.py",
-        "h4": "control/pd_control.py systems/balance_support.py systems/body_observer.py systems/playback_state.py",
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py view/replay.py",
     },

@@ -6,27 +6,26 @@ from typing import Literal
 
 import numpy as np
 
+from humanwalk.body.limbs import group_of
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, quantity
 
 THESIS_ANKLE = (10000.0, 10.0)
 """kp [N m/rad] and kd [N m s/rad] of the ankle: the only gains that the thesis prints (Fig 4.8)."""
 
-STIFFNESS_BY_JOINT_KIND = {
-    "Femur": 20000.0,
-    "Tibia": 10000.0,
-    "Ankle": 10000.0,
-    "Foot": 1000.0,
-    "Lumbar": 5000.0,
-    "Thoracic": 5000.0,
-    "Scapula": 1000.0,
-    "Cervical": 300.0,
-    "Head": 300.0,
-    "Shoulder": 500.0,
-    "Elbow": 300.0,
-    "Wrist": 50.0,
+STIFFNESS = {
+    "hip": 20000.0,
+    "knee": 10000.0,
+    "ankle": 10000.0,
+    "foot": 1000.0,
+    "spine": 5000.0,
+    "shoulder girdle": 1000.0,
+    "neck": 300.0,
+    "shoulder": 500.0,
+    "elbow": 300.0,
+    "wrist": 50.0,
 }
-"""kp [N m/rad] by the word in a joint's name. Ankle: thesis. The rest is ours: the thesis prints no other."""
+"""kp [N m/rad] of the presets by the joint's group. Ankle: thesis. The rest is ours: the thesis prints no other."""
 
 
 PdLaw = Literal["implicit", "semi_implicit", "explicit"]
@@ -87,10 +86,10 @@ def joint_gains(
     """
     import difflib
 
-    kp = parameters.stiffness_scale * np.array([preset_stiffness(name) for name in joint_names])
+    kp = parameters.stiffness_scale * np.array([STIFFNESS[group_of(name)] for name in joint_names])
     kd = 2.0 * parameters.damping_ratio * np.sqrt(kp * joint_space_inertia)
     if parameters.preset == "thesis":
-        ankle = np.array([is_ankle(name) for name in joint_names])
+        ankle = np.array([group_of(name) == "ankle" for name in joint_names])
         kp[ankle], kd[ankle] = THESIS_ANKLE
     for name, gains in parameters.gains.items():
         if name not in joint_names:
@@ -102,16 +101,3 @@ def joint_gains(
         i = list(joint_names).index(name)
         kp[i], kd[i] = gains.kp, gains.kd
     return kp, kd
-
-
-def is_ankle(joint_name: str) -> bool:
-    """Whether a joint is one of the three ankle joints of a leg."""
-    return "LegAnkle" in joint_name
-
-
-def preset_stiffness(joint_name: str) -> float:
-    """kp [N m/rad] of the presets for a joint of the body."""
-    for word, kp in STIFFNESS_BY_JOINT_KIND.items():
-        if word in joint_name:
-            return kp
-    raise ParameterError(f"{joint_name}: no preset stiffness; give its gains in actuators.gains")

@@ -12,6 +12,7 @@ from humanwalk.choices.reference import add_walking_reference, make_recorded_mot
 from humanwalk.choices.start import require_reachable, start_positions
 from humanwalk.choices.world import HumanPlant, add_human_plant
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
+from humanwalk.control.pd_control import PdLaw
 from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -88,7 +89,7 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
         parameters = scenario.balance.support.scaled(
             subject.mass / reference_body.mass, subject.stature / reference_body.stature
         )
-        _require_stable_support(human, parameters)
+        _require_stable_support(human, parameters, scenario.actuators.law)
         support = builder.AddNamedSystem("support", BalanceSupport(plant, parameters))
         builder.Connect(reference.pelvis, support.GetInputPort("pelvis_reference"))
         builder.Connect(plant.get_state_output_port(), support.GetInputPort("state"))
@@ -178,11 +179,11 @@ def _add_gait(
     return _Reference(gait.GetOutputPort("pelvis_reference"), exports)
 
 
-def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters) -> None:
+def _require_stable_support(human: HumanPlant, parameters: BalanceSupportParameters, law: PdLaw) -> None:
     """Raise ParameterError if the support, an explicit force, would diverge at the plant's step."""
     plant = human.plant
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
-    stable = largest_support_step(M, human.kp, human.kd, parameters)
+    stable = largest_support_step(M, human.kp, human.kd, law, parameters)
     if plant.time_step() > stable:
         raise ParameterError(
             f"balance.support: unstable at time_step {plant.time_step():g} s; allowed: steps up to "

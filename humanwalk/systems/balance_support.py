@@ -1,90 +1,52 @@
-"""Diagram: the balance that the thesis assumes, made visible as a force on the pelvis."""
+"""LeafSystem: the balance that the thesis assumes, as a force on the pelvis."""
 
 import numpy as np
-from pydrake.common import RandomDistribution
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.symbolic import MakeVectorContinuousVariable
-from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.primitives import (
-    Demultiplexer,
-    LinearTransformDensity,
-    Multiplexer,
-    SparseMatrixGain,
-    SymbolicVectorSystem,
-)
-from scipy.linalg import block_diag
-from scipy.sparse import csc_matrix
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from humanwalk.control.balance_support import (
-    BalanceSupportParameters,
-    linear_gain,
-    relative_quaternion,
-    turning_stiffness,
-)
+from humanwalk.body.limbs import PELVIS
+from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+from humanwalk.systems.signal import Signal, xyz
 
 
-class BalanceSupport(Diagram):
-    """A spatial spring-damper that holds the pelvis on the walking reference.
+class BalanceSupport(LeafSystem):
+    """A spatial spring-damper that holds the pelvis on the walking reference, see `support_wrench`.
 
-    It stands for the balance controller that the thesis assumes; a walk that needs it does not balance. Its wrench
-    is an output so that nobody takes it for balance. The plant asks for it in every step, so the law is made of
-    Drake's own blocks, with expressions for what is not linear, and no Python is run.
+    It replaces the balance controller that the thesis assumes: a walk with this support does not balance. The wrench is
+    an output so that a run records it.
 
     Inputs:
-        pelvis_reference: (13) where the pelvis should be in W, as Drake's floating base has it: quaternion wxyz,
+        pelvis_reference: (13) desired state of the pelvis in W, in the order of Drake's floating base: quaternion wxyz,
             position [m], angular velocity [rad/s], velocity [m/s].
         state: plant state [q; v].
 
     Outputs:
         wrench: (6) torque [N m], force [N] on the pelvis at its origin Po, in W.
-        generalized_force: (nv) the same, for the plant's applied_generalized_force port: a floating base's own
-            generalized forces are the wrench.
+        generalized_force: (nv) the wrench as generalized force, for the plant's applied_generalized_force port.
     """
 
     def __init__(self, plant: MultibodyPlant, parameters: BalanceSupportParameters) -> None:
-        """Make the support of a finalised plant whose floating base is the body `Pelvis`."""
+        """Make the support of a finalized plant with a floating pelvis."""
         super().__init__()
-        pelvis = plant.GetBodyByName("Pelvis")
+        self._parameters = parameters
+        pelvis = plant.GetBodyByName(PELVIS)
         first_q, first_v = pelvis.floating_positions_start(), pelvis.floating_velocities_start_in_v()
-        n, of_velocities = plant.num_positions(), slice(first_v, first_v + 6)
-        selected = block_diag(
-            np.eye(13), np.eye(n)[first_q : first_q + 7], np.eye(plant.num_velocities())[of_velocities]
-        )
-        linear = linear_gain(parameters)
-        # From reference and motion of the pelvis: the matrix, by columns, that makes a relative quaternion of one, then
-        # the pelvis' quaternion, then what is linear.
-        relative = np.array([[relative_quaternion(one, reference) for reference in np.eye(4)] for one in np.eye(4)])
-        gains = np.zeros((16 + 4 + 6, 26))
-        gains[:16, :4] = relative.swapaxes(1, 2).reshape(16, 4)
-        gains[16:20, 13:17] = np.eye(4)
-        gains[20:, 4:13], gains[20:, 17:] = -linear, linear
-        builder = DiagramBuilder()
-        inputs = builder.AddSystem(Multiplexer([13, plant.num_multibody_states()]))
-        parts = builder.AddSystem(SparseMatrixGain(csc_matrix(gains @ selected)))
-        split = builder.AddSystem(Demultiplexer([16, 4, 6]))
-        # It is made for random inputs, but does what is wanted: A w + b, with A and b from ports.
-        rotation = builder.AddSystem(LinearTransformDensity(RandomDistribution.kUniform, 4, 4))
-        turn = MakeVectorContinuousVariable(4, "turn")
-        # Drake's expressions raise the processor's flag for numbers that are none, which NumPy would report.
-        with np.errstate(invalid="ignore"):
-            scale = turning_stiffness(turn, parameters)
-        # Products are cheap in matrices and dear in expressions.
-        stiffness = builder.AddSystem(SymbolicVectorSystem(input=turn, output=[scale]))
-        axis = builder.AddSystem(SparseMatrixGain(csc_matrix(np.eye(6, 4, 1))))
-        wrench = builder.AddSystem(LinearTransformDensity(RandomDistribution.kUniform, 1, 6))
-        force = builder.AddSystem(SparseMatrixGain(csc_matrix(np.eye(plant.num_velocities())[:, of_velocities])))
-        builder.Connect(inputs.get_output_port(), parts.get_input_port())
-        builder.Connect(parts.get_output_port(), split.get_input_port())
-        builder.Connect(split.get_output_port(0), rotation.get_input_port_A())
-        builder.Connect(split.get_output_port(1), rotation.get_input_port_w_in())
-        builder.Connect(rotation.get_output_port_w_out(), stiffness.get_input_port())
-        builder.Connect(rotation.get_output_port_w_out(), axis.get_input_port())
-        builder.Connect(axis.get_output_port(), wrench.get_input_port_A())
-        builder.Connect(stiffness.get_output_port(), wrench.get_input_port_w_in())
-        builder.Connect(split.get_output_port(2), wrench.get_input_port_b())
-        builder.Connect(wrench.get_output_port_w_out(), force.get_input_port())
-        builder.ExportInput(inputs.get_input_port(0), "pelvis_reference")
-        builder.ExportInput(inputs.get_input_port(1), "state")
-        builder.ExportOutput(wrench.get_output_port_w_out(), "wrench")
-        builder.ExportOutput(force.get_output_port(), "generalized_force")
-        builder.BuildInto(self)
+        self._pose = slice(first_q, first_q + 7)
+        self._velocity = slice(plant.num_positions() + first_v, plant.num_positions() + first_v + 6)
+        self._base = slice(first_v, first_v + 6)
+        self._reference = self.DeclareVectorInputPort("pelvis_reference", 13)
+        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        self._wrench = self.DeclareVectorOutputPort("wrench", 6, self._calc_wrench)
+        self.DeclareVectorOutputPort("generalized_force", plant.num_velocities(), self._calc_generalized_force)
+        columns = (*xyz("support.torque_", "N_m"), *xyz("support.force_", "N"))
+        self.signals = (Signal("support_wrench", self._wrench, columns),)
+
+    def _calc_wrench(self, context: Context, output: BasicVector) -> None:
+        state, reference = self._state.Eval(context), self._reference.Eval(context)
+        output.SetFromVector(support_wrench(state[self._pose], state[self._velocity], reference, self._parameters))
+
+    def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
+        # The velocities of the floating base are the spatial velocity of the pelvis in W.
+        force = np.zeros(output.size())
+        force[self._base] = self._wrench.Eval(context)
+        output.SetFromVector(force)

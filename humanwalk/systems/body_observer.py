@@ -1,12 +1,12 @@
-"""LeafSystem: where the feet and the centre of mass are."""
+"""LeafSystem: the soles and the center of mass."""
 
 import numpy as np
-from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, LeafSystem, ValueProducer
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body import SIDES
-from humanwalk.numerics import Array
+from humanwalk.body.limbs import LEGS
+from humanwalk.systems.signal import Signal, xyz
 
 
 class BodyObserver(LeafSystem):
@@ -17,41 +17,34 @@ class BodyObserver(LeafSystem):
 
     Outputs:
         soles: (6) position of the right, then the left sole frame in W [m].
-        com: (6) position [m], then velocity [m/s] of the centre of mass in W.
+        com: (6) position [m], then velocity [m/s] of the center of mass in W.
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
-        """Make the observer of a finalised plant, which it uses for kinematics in a context of its own."""
+        """Make the observer of a finalized plant."""
         super().__init__()
         self._plant = plant
         self._plant_context = plant.CreateDefaultContext()
-        self._sole_frames = [plant.GetFrameByName(f"{side}Leg_Sole") for side in SIDES]
+        self._soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        # Both outputs are asked for together: the body is put into its state once.
-        self._motion = self.DeclareCacheEntry(
-            "motion",
-            ValueProducer(allocate=lambda: Value(object()), calc=self._calc_motion),
-            prerequisites_of_calc={self.input_port_ticket(self._state.get_index())},
+        soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
+        com = self.DeclareVectorOutputPort("com", 6, self._calc_com)
+        self.signals = (
+            Signal("soles", soles, tuple(column for side in SIDES for column in xyz(f"{side.lower()}_sole.", "m"))),
+            Signal("com", com, (*xyz("com.", "m"), *xyz("com.velocity_", "m_s"))),
         )
-        needs = {self._motion.ticket()}
-        self._soles_output = self.DeclareVectorOutputPort("soles", 6, self._calc_soles, prerequisites_of_calc=needs)
-        self._com_output = self.DeclareVectorOutputPort("com", 6, self._calc_com, prerequisites_of_calc=needs)
 
-    def _motion_at(self, state: Array) -> tuple[Array, Array]:
-        plant, body = self._plant, self._plant_context
-        plant.SetPositionsAndVelocities(body, state)
-        soles = [frame.CalcPoseInWorld(body).translation() for frame in self._sole_frames]
-        com = (
-            plant.CalcCenterOfMassPositionInWorld(body),
-            plant.CalcCenterOfMassTranslationalVelocityInWorld(body),
-        )
-        return np.concatenate(soles), np.concatenate(com)
-
-    def _calc_motion(self, context: Context, motion: Value) -> None:
-        motion.set_value(self._motion_at(self._state.Eval(context)))
+    def _body_at(self, context: Context) -> Context:
+        """The plant's context in the state of the input."""
+        self._plant.SetPositionsAndVelocities(self._plant_context, self._state.Eval(context))
+        return self._plant_context
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._motion.Eval(context)[0])
+        body = self._body_at(context)
+        output.SetFromVector(np.concatenate([sole.CalcPoseInWorld(body).translation() for sole in self._soles]))
 
     def _calc_com(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._motion.Eval(context)[1])
+        body = self._body_at(context)
+        position = self._plant.CalcCenterOfMassPositionInWorld(body)
+        velocity = self._plant.CalcCenterOfMassTranslationalVelocityInWorld(body)
+        output.SetFromVector(np.concatenate((position, velocity)))

@@ -1,18 +1,19 @@
-"""LeafSystem: the plant's state that a walking reference asks for, without physics."""
+"""LeafSystem: the plant state of a walking reference, without physics."""
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import PELVIS
 
 
 class PlaybackState(LeafSystem):
-    """Puts the pelvis and the joints exactly where they are desired to be, as fast as they are desired to move.
+    """The plant state in which pelvis and joints have their desired positions and velocities.
 
     Inputs:
-        pelvis_reference: (13) state of the pelvis in W as Drake's floating base has it: quaternion wxyz, position [m],
-            angular velocity [rad/s], velocity [m/s].
+        pelvis_reference: (13) desired state of the pelvis in W, in the order of Drake's floating base: quaternion wxyz,
+            position [m], angular velocity [rad/s], velocity [m/s].
         desired_state: (2n) desired joint angles [rad], then rates [rad/s], in actuator order.
 
     Outputs:
@@ -20,10 +21,10 @@ class PlaybackState(LeafSystem):
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
-        """Make the system for a finalised plant whose floating base is the body `Pelvis`."""
+        """Make the system for a finalized plant with a floating pelvis."""
         super().__init__()
         self._joints = JointMap.of(plant)
-        pelvis = plant.GetBodyByName("Pelvis")
+        pelvis = plant.GetBodyByName(PELVIS)
         self._pose = slice(pelvis.floating_positions_start(), pelvis.floating_positions_start() + 7)
         velocity = plant.num_positions() + pelvis.floating_velocities_start_in_v()
         self._velocity = slice(velocity, velocity + 6)

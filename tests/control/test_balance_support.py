@@ -1,12 +1,16 @@
 """Assumed balance: a linear spring-damper between the pelvis and its reference."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from scipy.spatial.transform import Rotation
 
-from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
+from humanwalk.body.joint_map import base_first_mass_matrix
+from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step, support_wrench
 
 K_ROTATION, K, D_ROTATION, D = 5000.0, 30000.0, 300.0, 2500.0
 SUPPORT = BalanceSupportParameters(
@@ -33,9 +37,60 @@ def displaced(error):
     return RigidTransform(turn @ REFERENCE.rotation(), REFERENCE.translation() + error[3:])
 
 
-def test_no_wrench_on_the_reference():
-    V = np.arange(6.0)
-    np.testing.assert_allclose(wrench_at(REFERENCE, V, V), 0.0, atol=1e-9)
+finite = st.floats(-1.0, 1.0)
+vectors = st.tuples(finite, finite, finite).map(np.array)
+rotations = (
+    st.tuples(st.floats(-3.0, 3.0), st.floats(-1.5, 1.5), st.floats(-3.0, 3.0)).map(RollPitchYaw).map(RotationMatrix)
+)
+poses = st.builds(RigidTransform, rotations, vectors)
+velocities = st.tuples(*[finite] * 6).map(np.array)
+
+
+@given(X=poses, V=velocities)
+def test_no_wrench_on_the_reference(X, V):
+    wrench = support_wrench(floating_base(X), V, np.concatenate((floating_base(X), V)), SUPPORT)
+    np.testing.assert_allclose(wrench, 0.0, atol=1e-9 * K)
+
+
+def energy(wrench_of_springs):
+    """Energy of two linear springs that pull by a wrench [J]."""
+    torque, force = np.split(wrench_of_springs, 2)
+    return torque @ torque / (2 * K_ROTATION) + force @ force / (2 * K)
+
+
+@given(X=poses, V=velocities)
+def test_without_damping_the_power_is_the_loss_of_the_energy_of_the_springs(X, V):
+    springs, reference = (
+        replace(SUPPORT, damping=0.0, rotational_damping=0.0),
+        np.concatenate((floating_base(REFERENCE), ZERO)),
+    )
+
+    def wrench(dt):
+        R = RotationMatrix(Rotation.from_rotvec(dt * V[:3]).as_matrix())
+        moved = RigidTransform(R @ X.rotation(), X.translation() + dt * V[3:])
+        return support_wrench(floating_base(moved), V, reference, springs)
+
+    # At half a turn the shorter way changes sides.
+    assume(np.linalg.norm(wrench(0.0)[:3]) < 3.1 * K_ROTATION)
+    dt = 1e-6
+    rate = (energy(wrench(dt)) - energy(wrench(-dt))) / (2 * dt)
+    assert wrench(0.0) @ V == pytest.approx(-rate, rel=1e-5, abs=1e-2)
+
+
+@given(X=poses, X_reference=poses, V=velocities, V_reference=velocities, R=rotations, shift=vectors)
+def test_the_wrench_does_not_depend_on_the_frame(X, X_reference, V, V_reference, R, shift):
+    def rotated(spatial):
+        return np.concatenate([R @ part for part in np.split(spatial, 2)])
+
+    def wrench(X, V, X_reference, V_reference):
+        return support_wrench(floating_base(X), V, np.concatenate((floating_base(X_reference), V_reference)), SUPPORT)
+
+    here = wrench(X, V, X_reference, V_reference)
+    # At half a turn the shorter way changes sides.
+    assume(np.linalg.norm(here[:3] + D_ROTATION * (V - V_reference)[:3]) < 3.1 * K_ROTATION)
+    X_VW = RigidTransform(R, shift)
+    there = wrench(X_VW @ X, rotated(V), X_VW @ X_reference, rotated(V_reference))
+    np.testing.assert_allclose(there, rotated(here), atol=1e-9 * K)
 
 
 @pytest.mark.parametrize("axis", range(6))
@@ -93,3 +148,24 @@ def test_a_heavier_taller_body_is_supported_alike():
     for error, factor in ((shift, 2.0), (turn, 2.0 * 1.5**2)):
         reference = wrench_at(displaced(error), ZERO, ZERO)
         np.testing.assert_allclose(wrench_at(displaced(error), ZERO, ZERO, bigger), factor * reference, atol=1e-9)
+
+
+# Stability.
+
+
+@given(mass=st.floats(1.0, 100.0), damping=st.floats(1e3, 1e5))
+def test_a_damped_block_is_stable_as_euler_says(mass, damping):
+    """Without joints or stiffness each direction is v' = (1 - h d / m) v."""
+    support = BalanceSupportParameters(stiffness=0.0, damping=damping, rotational_stiffness=0.0, rotational_damping=0.0)
+    step = largest_support_step(mass * np.eye(6), np.array([]), np.array([]), "implicit", support, upper=1.0)
+    assert step == pytest.approx(min(1.0, 2.0 * mass / damping), rel=0.011)
+
+
+def test_stiff_joints_let_the_support_take_longer_steps(plant):
+    """Held joints make the pelvis carry more inertia."""
+    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    n = M.shape[0] - 6
+    support = BalanceSupportParameters()
+    loose = largest_support_step(M, np.zeros(n), np.zeros(n), "implicit", support)
+    held = largest_support_step(M, np.full(n, 1e4), np.full(n, 1e2), "implicit", support)
+    assert loose < held

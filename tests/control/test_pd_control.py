@@ -5,14 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.limbs import JOINT_GROUPS
 from humanwalk.control.pd_control import (
     THESIS_ANKLE,
     ActuatorParameters,
     PdGains,
-    is_ankle,
     joint_gains,
     pd_torque,
-    preset_stiffness,
 )
 from humanwalk.quantity import ParameterError
 
@@ -39,7 +38,7 @@ def test_damping_brakes():
 
 def test_thesis_preset_gives_the_ankles_the_printed_gains(joints, inertia):
     kp, kd = joint_gains(joints.names, inertia, ActuatorParameters())
-    ankles = [i for i, name in enumerate(joints.names) if is_ankle(name)]
+    ankles = [i for i, name in enumerate(joints.names) if name in JOINT_GROUPS["ankle"]]
     assert len(ankles) == 6
     assert {(kp[i], kd[i]) for i in ankles} == {THESIS_ANKLE} == {(10000.0, 10.0)}
 
@@ -49,7 +48,7 @@ def test_every_other_joint_is_damped_by_the_ratio_asked_for(joints, inertia, pre
     kp, kd = joint_gains(joints.names, inertia, ActuatorParameters(preset=preset, damping_ratio=0.7))
     ratio = kd / (2 * np.sqrt(kp * inertia))
     for name, zeta in zip(joints.names, ratio, strict=True):
-        if preset == "damped" or not is_ankle(name):
+        if preset == "damped" or name not in JOINT_GROUPS["ankle"]:
             assert zeta == pytest.approx(0.7), name
 
 
@@ -75,8 +74,3 @@ def test_gains_for_no_joint_of_the_body_are_refused_with_the_nearest_name(joints
         ParameterError, match=r"^actuators\.gains\.RightLegTibia: .*42 joints.*did you mean RightLegTibiaMotion\?"
     ):
         joint_gains(joints.names, inertia, parameters)
-
-
-def test_a_joint_without_preset_is_named():
-    with pytest.raises(ParameterError, match=r"^Tail: no preset stiffness"):
-        preset_stiffness("Tail")
