@@ -33,7 +33,6 @@ PENDING: dict[str, dict[str, str]] = {
     "name": {
         "founder": "choices/balanced.py choices/start.py",
         "h1": "contact/leg_contact.py",
-        "h2": "systems/push_source.py walking/push.py",
         "h3": "control/body_dynamics.py control/whole_body_qp.py gait/arm_swing.py "
         "systems/inverse_kinematics_solver.py systems/whole_body_controller.py",
         "h5": "measures/human_likeness.py run/monitor.py",

@@ -1,14 +1,13 @@
-"""Diagram: what the walker is asked for."""
+"""LeafSystem: the commanded velocity over time."""
 
-from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.primitives import TrajectorySource
-from pydrake.trajectories import PiecewisePolynomial
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
+from humanwalk.systems.signal import Signal
 from humanwalk.walking.command import CommandParameters, CommandProfile
 
 
-class CommandSource(Diagram):
-    """The scenario's command over time, which a TrajectorySource reads out: no Python while it is simulated.
+class CommandSource(LeafSystem):
+    """The command profile at the time of the context.
 
     Outputs:
         command: (3) forward and sideways speed along the walker's heading [m/s], turn rate [rad/s].
@@ -17,16 +16,12 @@ class CommandSource(Diagram):
     def __init__(self, parameters: CommandParameters) -> None:
         super().__init__()
         self._profile = CommandProfile(parameters)
-        knots = self._profile.knots
-        samples = list(zip(*(self.command(time) for time in knots), strict=True))
-        builder = DiagramBuilder()
-        profile = builder.AddNamedSystem(
-            "profile", TrajectorySource(PiecewisePolynomial.FirstOrderHold(knots, samples))
+        port = self.DeclareVectorOutputPort(
+            "command", 3, self._calc_command, prerequisites_of_calc={self.time_ticket()}
         )
-        builder.ExportOutput(profile.get_output_port(), "command")
-        builder.BuildInto(self)
+        columns = ("command.forward_m_s", "command.sideways_m_s", "command.turn_rad_s")
+        self.signals = (Signal("command", port, columns),)
 
-    def command(self, time: float) -> list[float]:
-        """The output at a time [s]."""
-        command = self._profile.at(time)
-        return [command.forward, command.sideways, command.turn]
+    def _calc_command(self, context: Context, output: BasicVector) -> None:
+        command = self._profile.at(context.get_time())
+        output.SetFromVector([command.forward, command.sideways, command.turn])

@@ -1,4 +1,4 @@
-"""LeafSystem: pushes against the body."""
+"""LeafSystem: pushes of the body."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,22 +7,25 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
+from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import AbstractParameterIndex, BasicVector, Context, LeafSystem
 
-from humanwalk.walking.push import Push, PushParameters, pushes_of
+from humanwalk.quantity import ParameterError, did_you_mean
+from humanwalk.systems.signal import Signal, xyz
+from humanwalk.walking.push import Push, PushParameters, all_pushes
 
 
 @dataclass(frozen=True)
 class Pushes:
-    """What a context of a `PushSource` holds."""
+    """The abstract parameter of a `PushSource`."""
 
     pushes: tuple[Push, ...] = ()
 
 
 class PushSource(LeafSystem):
-    """Forces at the centres of mass of bodies, each constant for its duration.
+    """Forces at the centers of mass of bodies, each constant for its duration.
 
-    The pushes are a parameter of the context: one walker can be pushed in many ways from one moment on.
+    The pushes are a parameter of the context, so that one walker can be pushed in many ways from one state.
 
     Outputs:
         spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
@@ -30,43 +33,55 @@ class PushSource(LeafSystem):
     """
 
     def __init__(self, plant: MultibodyPlant, parameters: PushParameters, seed: int) -> None:
-        """Make the source.
+        """Create the source.
 
         Args:
-            plant: finalised plant whose bodies are pushed.
-            parameters: the pushes.
-            seed: of those that are random.
+            plant: Finalized plant of the bodies that are pushed.
+            parameters: The pushes.
+            seed: Seed of the random pushes.
+
+        Raises:
+            ParameterError: A push names a body that the plant does not have.
         """
         super().__init__()
         self._plant = plant
-        pushes = Value(self._checked(pushes_of(parameters, seed)))
+        pushes = Value(self._checked(all_pushes(parameters, seed)))
         self._pushes = AbstractParameterIndex(self.DeclareAbstractParameter(pushes))
         needs = {self.time_ticket(), self.abstract_parameter_ticket(self._pushes)}
-        self._forces_output = self.DeclareAbstractOutputPort(
+        self.DeclareAbstractOutputPort(
             "spatial_forces",
             lambda: Value([ExternallyAppliedSpatialForce()]),
-            self._calc_forces,
+            self._calc_spatial_forces,
             prerequisites_of_calc=needs,
         )
-        self._force_output = self.DeclareVectorOutputPort("force", 3, self._calc_force, prerequisites_of_calc=needs)
+        force = self.DeclareVectorOutputPort("force", 3, self._calc_force, prerequisites_of_calc=needs)
+        self.signals = (Signal("push", force, xyz("push.force_", "N")),)
 
     def set_pushes(self, context: Context, pushes: Sequence[Push]) -> None:
-        """Put other pushes in the place of those in this system's context."""
+        """Replace the pushes in this system's context.
+
+        Raises:
+            ParameterError: A push names a body that the plant does not have.
+        """
         context.get_mutable_abstract_parameter(self._pushes).set_value(self._checked(pushes))
 
     def _checked(self, pushes: Sequence[Push]) -> Pushes:
         for push in pushes:
             if not self._plant.HasBodyNamed(push.body):
-                raise ValueError(f"pushes.body: {push.body}: no such body; allowed: a body of the human, like Ribs")
+                names = [self._plant.get_body(BodyIndex(i)).name() for i in range(1, self._plant.num_bodies())]
+                raise ParameterError(
+                    f"pushes.body: {push.body}: no such body; allowed: the {len(names)} bodies of the model"
+                    f"{did_you_mean(push.body, names)}"
+                )
         return Pushes(tuple(pushes))
 
-    def _acting(self, context: Context) -> list[Push]:
+    def _active(self, context: Context) -> list[Push]:
         pushes: Pushes = context.get_abstract_parameter(self._pushes).get_value()
-        return [push for push in pushes.pushes if push.acts_at(context.get_time())]
+        return [push for push in pushes.pushes if push.is_active(context.get_time())]
 
-    def _calc_forces(self, context: Context, output: Value) -> None:
+    def _calc_spatial_forces(self, context: Context, output: Value) -> None:
         forces = []
-        for push in self._acting(context):
+        for push in self._active(context):
             body = self._plant.GetBodyByName(push.body)
             force = ExternallyAppliedSpatialForce()
             force.body_index = body.index()
@@ -76,4 +91,4 @@ class PushSource(LeafSystem):
         output.set_value(forces)
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(sum((np.array(push.force) for push in self._acting(context)), np.zeros(3)))
+        output.SetFromVector(sum((np.array(push.force) for push in self._active(context)), np.zeros(3)))

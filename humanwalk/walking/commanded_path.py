@@ -35,8 +35,8 @@ class Place(NamedTuple):
     def advanced(self, command: Command, dt: float) -> Place:
         """Where a command leads in `dt`: a piece of an arc, told by its middle heading."""
         turn = command.turn * dt
-        step = command.speed * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
-        return Place(self.position + step, self.heading + turn, command.turn, self.way + abs(command.speed) * dt)
+        step = command.velocity * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
+        return Place(self.position + step, self.heading + turn, command.turn, self.way + abs(command.velocity) * dt)
 
     def towards(self, other: Place, share: float) -> Place:
         """On the straight line to another place, which is near."""
@@ -74,10 +74,10 @@ class CommandedPath:
 
     def beside(self, walker: complex, command: Command) -> Place:
         """The place that is nearest to a walker; past the end, where the command leads."""
-        speed = abs(command.speed)
+        speed = abs(command.velocity)
         if speed < SLOW:
             return self.end
-        direction = command.speed / speed * cmath.exp(1j * self.end.heading)
+        direction = command.velocity / speed * cmath.exp(1j * self.end.heading)
         ahead = ((walker - self.end.position) / direction).real
         nearest = self.end.advanced(command, max(ahead, 0.0) / speed)
         for a, b in pairwise(self.places):
@@ -124,10 +124,10 @@ class PathFollowing:
         """
         aside = (beside.position - walker) / cmath.exp(1j * beside.heading)
         correction = _bounded(self.lane_gain * aside, self.lane_speed_limit)
-        if command.speed:
-            speed = abs(command.speed)
+        if command.velocity:
+            speed = abs(command.velocity)
             pace = self.pace_gain * (path.end.way - beside.way - self.behind * speed)
-            correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.speed / speed
+            correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.velocity / speed
         return correction
 
     def leashed(self, path: CommandedPath, beside: Place) -> CommandedPath:

@@ -1,4 +1,4 @@
-"""Pushes against the body, as data."""
+"""Pushes of the body as data."""
 
 from __future__ import annotations
 
@@ -7,60 +7,61 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.body.limbs import CHEST
 from humanwalk.quantity import quantity
 
 
 @dataclass(frozen=True)
 class Push:
-    """A constant force on the centre of mass of one body for a short time."""
+    """A constant force at the center of mass of one body for a short time."""
 
     time: float = quantity(5.0, "s", 0.0, 3600.0)
-    """When it begins."""
+    """When the force begins."""
 
     duration: float = quantity(0.1, "s", 0.001, 60.0)
     impulse: float = quantity(30.0, "N s", 0.0, 1000.0)
     """Force times duration."""
 
     direction: float = quantity(0.0, "rad", -2.0 * math.pi, 2.0 * math.pi)
-    """Of the force in the level plane: 0 forward along x, pi/2 to the left."""
+    """Direction of the force in the horizontal plane: 0 along x, pi/2 to the left."""
 
-    body: str = "Ribs"
-    """Which body is pushed."""
+    body: str = CHEST
+    """Name of the body."""
 
     @property
     def force(self) -> tuple[float, float, float]:
-        """In W [N]."""
+        """The force in W [N]."""
         size = self.impulse / self.duration
         return (size * math.cos(self.direction), size * math.sin(self.direction), 0.0)
 
-    def acts_at(self, time: float) -> bool:
-        """Whether the push acts at a time [s]."""
+    def is_active(self, time: float) -> bool:
+        """Whether the force acts at a time [s]."""
         return self.time <= time < self.time + self.duration
 
 
 @dataclass(frozen=True)
 class PushParameters:
-    """Pushes at given times, and pushes from everywhere at random times."""
+    """Pushes at given times, and pushes in random directions at random times."""
 
     pushes: tuple[Push, ...] = ()
 
     random_interval: float = quantity(0.0, "s", 0.0, 600.0)
-    """Mean time between random pushes, drawn from the scenario's seed; 0 for none."""
+    """Mean time between random pushes, which follow from the scenario's seed; 0 for none."""
 
     random_impulse: float = quantity(20.0, "N s", 0.0, 1000.0)
-    """Greatest impulse of a random push; its size is uniform up to it."""
+    """Largest impulse of a random push; impulses are uniformly distributed from 0."""
 
     random_until: float = quantity(60.0, "s", 0.0, 3600.0)
-    """Random pushes end here."""
+    """End of the random pushes."""
 
     @property
     def any(self) -> bool:
-        """Whether there may be a push."""
+        """Whether there are any pushes."""
         return bool(self.pushes) or self.random_interval > 0.0
 
 
-def pushes_of(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
-    """All pushes, those that are random drawn from `seed`."""
+def all_pushes(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
+    """The given pushes, then the random ones drawn from `seed`."""
     drawn = []
     if parameters.random_interval > 0.0:
         random = np.random.default_rng(seed)

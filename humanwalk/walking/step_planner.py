@@ -233,7 +233,7 @@ class StepPlanner:
 
     def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         timing = self.parameters.timing
-        moving = abs(command.speed) > self.parameters.stop_speed or abs(command.turn) > self.parameters.stop_speed
+        moving = abs(command.velocity) > self.parameters.stop_speed or abs(command.turn) > self.parameters.stop_speed
         if state.phase is Phase.STAND and moving:
             return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, support_start=self._support(state)[0])
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
@@ -268,7 +268,7 @@ class StepPlanner:
             timing.step - timing.double_support,
             self.parameters.swing,
         )
-        pace = command.speed * cmath.exp(1j * state.heading)
+        pace = command.velocity * cmath.exp(1j * state.heading)
         motion = PlanarMotion(foot.position, foot.velocity, self.parameters.swing.leaving(pace))
         left_as = self._other_foot(state, command, None, 1.0)
         swing = Swing(motion, profile, foot.position, 0.0, foot.yaw, left_as.toes[0])
@@ -407,7 +407,7 @@ class StepPlanner:
             foothold = swing.foothold + share * (goal - swing.foothold)
             rise = height_at(self.terrain, foothold) - state.ground(other(state.stance))
             swing = swing._replace(foothold=foothold, rise=rise)
-        pace = command.speed * cmath.exp(1j * state.heading)
+        pace = command.velocity * cmath.exp(1j * state.heading)
         landing = PlanarMotion(swing.foothold, law.landing_pace * pace, -law.landing_brake * pace)
         motion = swing.motion.towards(landing, remaining / rate, self.period, law.jerk_limit)
         stance, u = state.ankle(state.stance), cmath.exp(1j * state.heading)
@@ -422,7 +422,7 @@ class StepPlanner:
         """The periodic walk that is wanted now: as commanded, and a little towards the path."""
         p = self.parameters
         timing, placement = p.timing, p.placement
-        speed = command.speed + state.to_path
+        speed = command.velocity + state.to_path
         move = speed * timing.step
         turn = state.turn * timing.step
         # Sideways, one of the two half-steps is narrower by the way of a step.

@@ -1,4 +1,6 @@
-"""The command source: piecewise linear, bounded rates, and what it refuses."""
+"""The command over time: piecewise linear with bounded rates; unsorted points are an error."""
+
+from itertools import accumulate
 
 import pytest
 from hypothesis import given
@@ -18,9 +20,10 @@ def command_at(time, parameters=WALK):
     return source.GetOutputPort("command").Eval(context)
 
 
-def test_port_name_and_size():
-    port = CommandSource(WALK).GetOutputPort("command")
-    assert (port.get_name(), port.size()) == ("command", 3)
+def test_port_and_signal():
+    (signal,) = CommandSource(WALK).signals
+    assert (signal.name, signal.port.get_name(), signal.port.size()) == ("command", "command", 3)
+    assert signal.columns == ("command.forward_m_s", "command.sideways_m_s", "command.turn_rad_s")
 
 
 @pytest.mark.parametrize(
@@ -34,28 +37,47 @@ def test_port_name_and_size():
         (20.0, (0, 0.2, 0.5)),
     ],
 )
-def test_it_ramps_to_each_point(time, expected):
+def test_speeds_ramp_to_each_point(time, expected):
     assert command_at(time) == pytest.approx(expected)
 
 
-@given(st.floats(0.0, 12.0), st.floats(1e-3, 0.5))
-def test_speeds_change_no_faster_than_allowed(time, dt):
-    profile = CommandProfile(WALK)
+speeds = st.tuples(st.floats(-1.5, 3.0), st.floats(-1.0, 1.0), st.floats(-2.0, 2.0))
+profiles = st.lists(st.tuples(st.floats(0.1, 5.0), speeds), max_size=4).map(
+    lambda steps: CommandParameters(
+        tuple(
+            CommandPoint(time, *target)
+            for time, (_, target) in zip(accumulate(gap for gap, _ in steps), steps, strict=True)
+        )
+    )
+)
+
+
+@given(profiles, st.floats(0.0, 25.0), st.floats(1e-3, 0.5))
+def test_speeds_change_no_faster_than_allowed(parameters, time, dt):
+    profile = CommandProfile(parameters)
     before, after = profile.at(time), profile.at(time + dt)
-    assert abs(after.forward - before.forward) <= WALK.acceleration * dt + 1e-9
-    assert abs(after.turn - before.turn) <= WALK.turn_acceleration * dt + 1e-9
+    assert abs(after.forward - before.forward) <= parameters.acceleration * dt + 1e-9
+    assert abs(after.sideways - before.sideways) <= parameters.acceleration * dt + 1e-9
+    assert abs(after.turn - before.turn) <= parameters.turn_acceleration * dt + 1e-9
 
 
-def test_a_point_may_interrupt_the_ramp_before_it():
+@given(profiles)
+def test_in_the_end_the_last_target_is_reached(parameters):
+    last = (parameters.points or (CommandPoint(),))[-1]
+    end = CommandProfile(parameters).at(1000.0)
+    assert (end.forward, end.sideways, end.turn) == pytest.approx((last.forward, last.sideways, last.turn))
+
+
+def test_a_point_may_interrupt_the_ramp_of_the_point_before():
     parameters = CommandParameters(points=(CommandPoint(0.0, forward=1.0), CommandPoint(1.0)))
     assert command_at(1.0, parameters)[0] == pytest.approx(0.4)
     assert command_at(1.5, parameters)[0] == pytest.approx(0.2)
 
 
-def test_without_points_it_stands():
+def test_without_points_the_command_is_zero():
     assert command_at(5.0, CommandParameters(points=())) == pytest.approx([0, 0, 0])
 
 
-def test_points_that_go_back_in_time_are_refused():
+def test_unsorted_points_are_an_error():
     with pytest.raises(ParameterError, match=r"points: time 1 comes after 2"):
         CommandParameters(points=(CommandPoint(2.0), CommandPoint(1.0)))

@@ -39,13 +39,20 @@ def test_ports(planner, plant):
     assert [port.size() for port in outputs[1:]] == [2, 2, 9]
 
 
+def test_signals_have_a_column_per_element_and_the_names_of_their_ports(planner):
+    assert [signal.name for signal in planner.signals] == ["phase", "contact_schedule", "balance"]
+    for signal in planner.signals:
+        assert signal.port.get_name() == signal.name
+        assert len(set(signal.columns)) == signal.port.size()
+
+
 def test_before_initialization_both_feet_stand(planner):
     context = planner.CreateDefaultContext()
     assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([1, 1])
     assert planner.GetOutputPort("balance").Eval(context) == pytest.approx(np.zeros(9))
 
 
-def test_it_stands_until_it_is_told_to_walk(planner, plant):
+def test_it_stands_while_nothing_is_commanded(planner, plant):
     simulator = simulator_of(planner, plant, (0, 0, 0))
     simulator.AdvanceTo(0.5)
     plan = planner.GetOutputPort("plan").Eval(simulator.get_context())
@@ -63,7 +70,25 @@ def test_a_command_makes_it_shift_the_weight_and_lift_the_first_foot(planner, pl
     assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([0, 1])
 
 
-def test_reading_plans_nothing(planner, plant):
+def test_the_gait_cycles_of_the_feet_are_half_a_cycle_apart(planner, plant):
+    simulator = simulator_of(planner, plant, (0.3, 0, 0))
+    seen = []
+
+    def record(context):
+        right, left = planner.GetOutputPort("phase").Eval(context)
+        if planner.GetOutputPort("plan").Eval(context).phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
+            seen.append((right, left))
+
+    simulator.set_monitor(record)
+    simulator.AdvanceTo(3.0)
+    assert len(seen) > 100
+    for right, left in seen:
+        assert abs(right - left) == pytest.approx(0.5)
+        assert min(right, left) >= 0.0
+        assert max(right, left) <= 1.0
+
+
+def test_evaluating_outputs_does_not_plan(planner, plant):
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()

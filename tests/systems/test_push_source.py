@@ -1,12 +1,16 @@
-"""The push source: force times duration is the impulse, in its direction, and random pushes come from the seed."""
+"""The push source: force times duration is the impulse; random pushes follow from the seed."""
 
 import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from humanwalk.body.limbs import CHEST
+from humanwalk.quantity import ParameterError
 from humanwalk.systems.push_source import PushSource
-from humanwalk.walking.push import Push, PushParameters, pushes_of
+from humanwalk.walking.push import Push, PushParameters, all_pushes
 
 
 def at(source, time):
@@ -20,7 +24,10 @@ def source(plant):
     return PushSource(plant, PushParameters((Push(2.0, 0.1, 30.0, math.pi / 2), Push(2.05, 0.1, 10.0))), seed=0)
 
 
-def test_port_names(source):
+def test_ports_and_signal(source):
+    (signal,) = source.signals
+    assert (signal.name, signal.port.get_name()) == ("push", "force")
+    assert signal.columns == ("push.force_x_N", "push.force_y_N", "push.force_z_N")
     assert source.GetOutputPort("spatial_forces").get_name() == "spatial_forces"
     assert source.GetOutputPort("force").size() == 3
 
@@ -34,10 +41,11 @@ def test_force_over_time(source, time, force):
     assert sum((f.F_Bq_W.translational() for f in forces), np.zeros(3)) == pytest.approx(force, abs=1e-9)
 
 
-def test_it_pushes_at_the_centre_of_mass_of_the_body(plant, source):
+def test_the_force_acts_at_the_center_of_mass_of_the_body(plant, source):
     (force,), _ = at(source, 2.0)
-    assert plant.get_body(force.body_index).name() == "Ribs"
-    assert force.p_BoBq_B == pytest.approx([0, 0, 0.0385])
+    body = plant.get_body(force.body_index)
+    assert body.name() == CHEST
+    assert force.p_BoBq_B == pytest.approx(body.default_com())
     assert force.F_Bq_W.rotational() == pytest.approx([0, 0, 0])
 
 
@@ -47,19 +55,28 @@ def test_a_context_may_hold_other_pushes(source):
     context.SetTime(1.05)
     assert source.GetOutputPort("force").Eval(context) == pytest.approx([200.0, 0.0, 0.0])
     assert at(source, 1.05)[1] == pytest.approx([0.0, 0.0, 0.0])
-    with pytest.raises(ValueError, match="Rib: no such body"):
+    with pytest.raises(ParameterError, match="Rib: no such body"):
         source.set_pushes(context, [Push(body="Rib")])
 
 
-def test_a_body_that_is_none_is_refused(plant):
-    with pytest.raises(ValueError, match="Rib: no such body"):
+def test_an_unknown_body_is_a_one_line_error_that_names_the_nearest(plant):
+    message = r"^pushes\.body: Rib: no such body; allowed: the 44 bodies of the model; did you mean Ribs\?$"
+    with pytest.raises(ParameterError, match=message):
         PushSource(plant, PushParameters((Push(body="Rib"),)), seed=0)
 
 
-def test_random_pushes_are_the_seeds():
+@given(st.floats(0.01, 2.0), st.floats(0.1, 100.0), st.floats(-math.pi, math.pi))
+def test_force_times_duration_is_the_impulse(duration, impulse, direction):
+    push = Push(1.0, duration, impulse, direction)
+    x, y, z = (duration * f for f in push.force)
+    assert (math.hypot(x, y), z) == pytest.approx((impulse, 0.0))
+    assert math.remainder(math.atan2(y, x) - direction, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_random_pushes_follow_from_the_seed():
     parameters = PushParameters(random_interval=2.0, random_impulse=15.0, random_until=30.0)
-    pushes = pushes_of(parameters, seed=3)
-    assert pushes == pushes_of(parameters, seed=3)
-    assert pushes != pushes_of(parameters, seed=4)
+    pushes = all_pushes(parameters, seed=3)
+    assert pushes == all_pushes(parameters, seed=3)
+    assert pushes != all_pushes(parameters, seed=4)
     assert pushes
     assert all(push.impulse <= 15.0 and push.time < 30.0 for push in pushes)

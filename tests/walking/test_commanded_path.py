@@ -67,7 +67,7 @@ def test_who_turns_on_the_spot_turns_with_the_command():
 def test_the_correction_is_towards_the_path_and_bounded(x, y, heading):
     path = walked(STRAIGHT, 3.0, CommandedPath.begin(0.3 + 0.1j, heading))
     away = complex(x, y) * cmath.exp(1j * heading)
-    own = path.end.position - FOLLOWING.behind * STRAIGHT.speed * cmath.exp(1j * heading)
+    own = path.end.position - FOLLOWING.behind * STRAIGHT.velocity * cmath.exp(1j * heading)
     walker = own + away
     correction = FOLLOWING.correction(path, path.beside(walker, STRAIGHT), walker, STRAIGHT)
     assert correction.real * x <= 1e-9
@@ -78,7 +78,7 @@ def test_the_correction_is_towards_the_path_and_bounded(x, y, heading):
 
 def test_who_is_half_a_step_behind_the_command_is_left_alone():
     path = walked(STRAIGHT, 2.0)
-    own = path.end.position - FOLLOWING.behind * STRAIGHT.speed
+    own = path.end.position - FOLLOWING.behind * STRAIGHT.velocity
     assert FOLLOWING.correction(path, path.beside(own, STRAIGHT), own, STRAIGHT) == pytest.approx(0.0, abs=1e-9)
 
 
