@@ -28,7 +28,7 @@ from humanwalk.bench.result import machine
 from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.body.joint_map import JointMap
 from humanwalk.files import write_text
-from humanwalk.measures.events import contact_with_hysteresis
+from humanwalk.measures.events import foot_events
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.simulate import prepare
@@ -142,9 +142,7 @@ def motion(variant: Variant, duration: float) -> Motion:
 
 def gait_of(time: Array, force: Array, com: Array, begin: float) -> dict[str, float | None]:
     """Speed, mean time between two touchdowns, and greatest vertical force, from `begin` [s] on."""
-    contact = [contact_with_hysteresis(time, force[:, column]).astype(int) for column in (2, 5)]
-    landings = np.sort(np.concatenate([time[1:][np.diff(foot) > 0] for foot in contact]))
-    steps = np.diff(landings[landings >= begin])
+    steps = np.diff(np.sort(np.concatenate([foot_events(time, force[:, i], begin).touchdown_times for i in (2, 5)])))
     steady = time >= begin
     return {
         "speed_m_s": float(np.polyfit(time[steady], com[steady, 0], 1)[0]) if steady.sum() > 10 else None,

@@ -27,7 +27,7 @@ from pydrake.systems.framework import Context, Diagram
 from humanwalk.body import SIDES
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.measures.effort import cost_of_transport
-from humanwalk.measures.events import touchdowns
+from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import steady_from
 from humanwalk.run.monitor import Monitor
@@ -62,7 +62,7 @@ def measure(label: str, scenario: Scenario) -> dict[str, Any]:
     time, x, y = (signals[name].to_numpy() for name in (TIME, "com.x_m", "com.y_m"))
     steady = time >= steady_from(scenario)
     several = steady.sum() > 1
-    landings = np.sort(np.concatenate([touchdowns(signals, side) for side in SIDES]))
+    landings = np.sort(np.concatenate([events_of(signals, side).touchdown_times for side in SIDES]))
     steps = np.diff(landings[landings >= steady_from(scenario)])
     row = {
         "run": label,

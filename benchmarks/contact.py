@@ -25,7 +25,7 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.contact.asperity import AsperityParameters, friction_bound, friction_force, normal_force
 from humanwalk.contact.contact_step import Contacts, ContactStep
 from humanwalk.diagrams.choose import make_diagram
-from humanwalk.measures.events import CONTACT_ON_N, foot_contact, touchdowns
+from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.measures.signals import TIME, matrix, signal_columns
 from humanwalk.measures.summary import steady_from
 from humanwalk.quantity import GRAVITY
@@ -165,9 +165,13 @@ def measure(scenario: Scenario, signals: Any, how: dict[str, Any], motion: Any) 
     column = lambda name: signals[name].to_numpy()[steady]  # noqa: E731
     vertical = sum(column(f"{side.lower()}_foot.force_z_N") for side in SIDES)
     support = column("support.force_z_N") if "support.force_z_N" in signals.column_names else np.zeros(steady.sum())
-    down = {side: foot_contact(signals, side)[steady] for side in SIDES}
+    down = {side: events_of(signals, side).contact[steady] for side in SIDES}
     slips = {side: motion[side][1][steady] * down[side] for side in SIDES}
-    steps = sum((touchdowns(signals, side) >= time_s[steady][0]).sum() for side in SIDES) if steady.sum() else 0
+    steps = (
+        sum((events_of(signals, side).touchdown_times >= time_s[steady][0]).sum() for side in SIDES)
+        if steady.sum()
+        else 0
+    )
     loaded = {side: column(f"{side.lower()}_foot.force_z_N") >= CONTACT_ON_N for side in SIDES}
     use = np.concatenate([column(f"{side.lower()}_foot.friction_use")[loaded[side]] for side in SIDES])
     if how["end"] != "completed" or steady.sum() < 2 or not use.size:
@@ -209,7 +213,7 @@ def plotted_from(walk: str, signals: Any, end: float) -> float:
     """The thesis' feet go by the clock; the balanced walker's strides differ, so they are shown from a landing on."""
     if walk == "thesis":
         return end - LAST
-    down = signals[TIME].to_numpy()[foot_contact(signals, "Right")]
+    down = signals[TIME].to_numpy()[events_of(signals, "Right").contact]
     landings = down[1:][np.diff(down) > SWING]
     return float(landings[landings <= end - LAST][-1])
 

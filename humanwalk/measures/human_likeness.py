@@ -20,11 +20,10 @@ from scipy.spatial.transform import Rotation
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
 from humanwalk.measures.effort import cost_of_transport
+from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.gait_measures import (
-    Footfalls,
     cadence,
     double_support_shares,
-    footfalls,
     stance_shares,
     step_lengths,
     step_widths,
@@ -122,9 +121,9 @@ def people(quantity: str) -> tuple[Array, Array, Array]:
     return cycle, mean, sd
 
 
-def over_strides(signals: pa.Table, foot: Footfalls, values: Array) -> Array:
+def over_strides(foot: FootEvents, values: Array) -> Array:
     """A signal over every whole stride of a leg at the places of CYCLE, shape (strides, 101)."""
-    time = signals[TIME].to_numpy()
+    time = foot.time
     strides = [np.interp(time[a] + CYCLE / 100.0 * (time[b] - time[a]), time, values) for a, b in foot.strides]
     return np.array(strides).reshape(-1, CYCLE.size)
 
@@ -208,13 +207,10 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
         ParameterError: fewer than FEWEST_STRIDES strides of a leg, or a way that does not lead straight ahead.
     """
     begin = steady_from(scenario)
-    feet = {side: footfalls(signals, side, begin) for side in SIDES}
+    feet = {side: events_of(signals, side, begin) for side in SIDES}
     _require_walk(signals, feet, begin)
     curves = {
-        name: {
-            side: Likeness.of(over_strides(signals, feet[side], angle.of(signals, side)), angle.people)
-            for side in SIDES
-        }
+        name: {side: Likeness.of(over_strides(feet[side], angle.of(signals, side)), angle.people) for side in SIDES}
         for name, angle in ANGLES.items()
     }
     return Comparison(
@@ -231,7 +227,7 @@ def late_stance_knee(strides: Array) -> Array:
     return least
 
 
-def force_humps(signals: pa.Table, side: Side, foot: Footfalls, weight: float) -> Array:
+def force_humps(signals: pa.Table, side: Side, foot: FootEvents, weight: float) -> Array:
     """Vertical force of every whole stance: first hump, dip and second hump per body weight, shape (stances, 3).
 
     Humps are the greatest force in either half of the stance, the dip the least between them, below FORCE_CUTOFF_HZ:
@@ -258,13 +254,13 @@ def has_two_humps(humps: Array) -> npt.NDArray[np.bool_]:
     return dips
 
 
-def com_excursions(signals: pa.Table, foot: Footfalls, axis: str) -> Array:
+def com_excursions(signals: pa.Table, foot: FootEvents, axis: str) -> Array:
     """Range of the centre of mass in every stride along y or z, off the straight line through the stride's ends [m]."""
     place = signals[f"com.{axis}_m"].to_numpy()
     return np.array([np.ptp(place[a : b + 1] - np.linspace(place[a], place[b], b + 1 - a)) for a, b in foot.strides])
 
 
-def peak_moments(signals: pa.Table, motion: str, sign: int, side: Side, foot: Footfalls) -> Array:
+def peak_moments(signals: pa.Table, motion: str, sign: int, side: Side, foot: FootEvents) -> Array:
     """Greatest torque of a leg's joint in every stride, flexing for sign 1 and extending for -1 [N m]."""
     torque = sign * signals[f"{side}{motion}.torque_N_m"].to_numpy()
     return np.array([torque[a:b].max() for a, b in foot.strides])
@@ -278,20 +274,20 @@ def people_com_excursion(direction: str, speed: float) -> People | None:
     return People(mean - sd, mean + sd, f"{ORENDURFF}, at this speed")
 
 
-def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls], begin: float) -> Iterator[Measure]:
+def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, FootEvents], begin: float) -> Iterator[Measure]:
     mass, time = scenario.subject.mass, signals[TIME].to_numpy()
     weight, leg = mass * GRAVITY, scenario.subject.skeleton.hip_height
 
-    def each(measure: Callable[[Side, Footfalls], Array]) -> Array:
+    def each(measure: Callable[[Side, FootEvents], Array]) -> Array:
         return np.concatenate([measure(side, foot) for side, foot in feet.items()])
 
     free = f"{PERRY}, women and men at their own speed"
-    speeds = each(lambda side, foot: stride_lengths(signals, side, foot) / stride_times(signals, foot))
+    speeds = each(lambda side, foot: stride_lengths(signals, side, foot) / stride_times(foot))
     yield Measure("speed", "m/s", speeds, People(1.28, 1.43, free))
     lengths = each(lambda side, foot: step_lengths(signals, side, foot))
     yield Measure("step length", "m", lengths, People(0.64, 0.73, free))
-    yield Measure("cadence", "1/min", np.array([cadence(signals, feet)]), People(111.0, 117.0, free))
-    stances = each(lambda side, foot: stance_shares(signals, foot))
+    yield Measure("cadence", "1/min", np.array([cadence(feet)]), People(111.0, 117.0, free))
+    stances = each(lambda side, foot: stance_shares(foot))
     yield Measure("share of stance", "", stances, People(0.60, 0.62, PERRY))
     both = each(lambda side, foot: double_support_shares(foot, feet[other_side(side)]))
     yield Measure("share of double support", "", both, People(0.20, 0.24, PERRY))
@@ -313,7 +309,7 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, Footfalls]
     )
 
     knee = ANGLES["knee"]
-    least = each(lambda side, foot: late_stance_knee(over_strides(signals, foot, knee.of(signals, side))))
+    least = each(lambda side, foot: late_stance_knee(over_strides(foot, knee.of(signals, side))))
     yield Measure("least knee flexion, terminal stance", "deg", least, _people_late_stance_knee())
     cost = cost_of_transport(signals, time >= begin, mass)
     yield Measure("cost of transport", "", np.array([np.nan if cost is None else cost]))
@@ -331,7 +327,7 @@ def _people_late_stance_knee() -> People:
     return People(float(low), float(high), SCHWARTZ)
 
 
-def _require_walk(signals: pa.Table, feet: dict[Side, Footfalls], begin: float) -> None:
+def _require_walk(signals: pa.Table, feet: dict[Side, FootEvents], begin: float) -> None:
     counts = {side: len(foot.strides) for side, foot in feet.items()}
     if min(counts.values()) < FEWEST_STRIDES:
         raise ParameterError(

@@ -2,17 +2,16 @@
 
 import math
 from importlib.metadata import version
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from humanwalk.body import SIDES
+from humanwalk.body import SIDES, Side
 from humanwalk.choices.reference import make_gait
 from humanwalk.measures.effort import cost_of_transport, joint_names
-from humanwalk.measures.events import touchdowns
+from humanwalk.measures.events import events_of
 from humanwalk.measures.gait_measures import gait_measures
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
@@ -50,7 +49,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
         "foot_lift_m": {side.lower(): foot_lift(signals, side) if physics else None for side in SIDES},
         "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
-        "steps": sum(len(touchdowns(signals, side)) for side in SIDES) if physics else None,
+        "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,
         "external_support": supported,
         "support_force_rms_N": _rms_norm(signals, "support.force_", "N", steady) if supported else 0.0,
         "support_torque_rms_N_m": _rms_norm(signals, "support.torque_", "N_m", steady) if supported else 0.0,
@@ -87,16 +86,14 @@ def steady_from(scenario: Scenario) -> float:
     return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
 
 
-def foot_lift(signals: pa.Table, side: str) -> float | None:
+def foot_lift(signals: pa.Table, side: Side) -> float | None:
     """Median over the strides of the sole's greatest height above its height at the start [m]; null without strides."""
-    time = signals[TIME].to_numpy()
     height = signals[f"{side.lower()}_sole.z_m"].to_numpy()
-    landings = touchdowns(signals, side)
-    peaks = [height[(time >= begin) & (time < end)].max() for begin, end in pairwise(landings)]
+    peaks = [height[begin:end].max() for begin, end in events_of(signals, side).strides]
     return float(np.median(peaks) - height[0]) if peaks else None
 
 
-def foot_line_error(signals: pa.Table, side: str) -> float:
+def foot_line_error(signals: pa.Table, side: Side) -> float:
     """Greatest sideways distance of a sole from the line along x on which it started [m]."""
     y = signals[f"{side.lower()}_sole.y_m"].to_numpy()
     return float(np.abs(y - y[0]).max())

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.measures.gait_measures import footfalls
+from humanwalk.measures.events import events_of
 from humanwalk.measures.human_likeness import (
     ANGLES,
     CYCLE,
@@ -87,7 +87,7 @@ def test_strides_are_counted_one_by_one(walk):
     signals = walk()
     time = signals[TIME].to_numpy()
     knee = np.where((time > 3.0) & (time < 4.0), 0.0, signals["RightLegTibiaMotion.angle_rad"].to_numpy())
-    strides = over_strides(signals, footfalls(signals, "Right"), np.degrees(knee))
+    strides = over_strides(events_of(signals, "Right"), np.degrees(knee))
     bad = Likeness.of(strides, "knee_flexion_deg").rms > 10.0
     assert np.flatnonzero(bad).tolist() == [2]
 
@@ -101,7 +101,7 @@ def test_late_stance_knee_is_the_least_of_terminal_stance():
 @pytest.mark.parametrize(("dip", "two"), [(0.8, True), (1.0, True), (1.08, False)])
 def test_humps_are_found(walk, dip, two):
     signals = walk(humps=(1.15, dip, 1.1))
-    humps = force_humps(signals, "Right", footfalls(signals, "Right"), WEIGHT)
+    humps = force_humps(signals, "Right", events_of(signals, "Right"), WEIGHT)
     assert humps.mean(axis=0) == pytest.approx([1.15, dip, 1.1], abs=0.01)
     assert set(has_two_humps(humps).tolist()) == {two}
 
@@ -111,7 +111,7 @@ def test_impact_of_the_heel_is_no_hump(walk):
     time, force = signals[TIME].to_numpy(), signals["right_foot.force_z_N"].to_numpy()
     impact = force + np.where(np.isclose(time % 1.0, 0.02), 2 * WEIGHT, 0.0)
     knocked = signals.drop_columns("right_foot.force_z_N").append_column("right_foot.force_z_N", [impact])
-    humps = force_humps(knocked, "Right", footfalls(knocked, "Right"), WEIGHT)
+    humps = force_humps(knocked, "Right", events_of(knocked, "Right"), WEIGHT)
     assert humps[:, 0] == pytest.approx(1.1, abs=0.02)
 
 
@@ -152,7 +152,7 @@ def test_drift_is_no_excursion(walk):
     drifting = signals["com.y_m"].to_numpy() + 0.3 * signals[TIME].to_numpy()
     drifted = signals.drop_columns("com.y_m").append_column("com.y_m", [drifting])
     for record in (signals, drifted):
-        assert com_excursions(record, footfalls(record, "Right"), "y") == pytest.approx(0.04, rel=0.01)
+        assert com_excursions(record, events_of(record, "Right"), "y") == pytest.approx(0.04, rel=0.01)
 
 
 @pytest.mark.parametrize("direction", ["vertical", "lateral"])

@@ -5,17 +5,9 @@ import json
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from humanwalk.measures.effort import cost_of_transport
-from humanwalk.measures.events import (
-    CONTACT_OFF_N,
-    CONTACT_ON_N,
-    SHORTEST_PHASE_S,
-    contact_with_hysteresis,
-    touchdowns,
-)
+from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME, signal_columns
 from humanwalk.measures.summary import foot_lift, foot_line_error, steady_from, summarize, tracking_error
 from humanwalk.quantity import GRAVITY
@@ -181,43 +173,19 @@ def test_saturated_share_and_peak_torque_are_of_their_joint(joints):
 # Its parts.
 
 
-def test_contact_has_hysteresis():
-    between = 0.5 * (CONTACT_ON_N + CONTACT_OFF_N)
-    levels = np.repeat([0.0, between, 500.0, between, 0.0, between], 20)
-    contact = contact_with_hysteresis(PERIOD * np.arange(levels.size), levels)
-    assert contact[::20].tolist() == [False, False, True, True, False, False]
-
-
-@pytest.mark.parametrize(("length", "counts"), [(0.5, False), (1.5, True)])
-@pytest.mark.parametrize("lifted", [True, False])
-def test_bounce_shorter_than_a_phase_is_merged(length, counts, lifted):
-    time = 0.001 * np.arange(1000)
-    inside = (time >= 0.5) & (time < 0.5 + length * SHORTEST_PHASE_S)
-    force = np.where(inside == lifted, 0.0, 500.0)
-    changes = np.count_nonzero(np.diff(contact_with_hysteresis(time, force)))
-    assert changes == (2 if counts else 0)
-
-
 def test_first_rows_without_force_are_no_landing(joints):
     standing = {f"{side}_foot.force_z_N": lambda t: np.where(t < 0.005, 0.0, 350.0) for side in ("right", "left")}
     signals = walk_of(joints, **standing)
-    assert touchdowns(signals, "Right").size == touchdowns(signals, "Left").size == 0
+    assert events_of(signals, "Right").touchdowns.size == events_of(signals, "Left").touchdowns.size == 0
     assert summary_of(signals)["steps"] == 0
-
-
-@given(st.lists(st.tuples(st.integers(1, 12), st.sampled_from([0.0, 35.0, 500.0])), min_size=1, max_size=12))
-def test_no_phase_but_the_last_is_short(pieces):
-    force = np.concatenate([np.full(length, level) for length, level in pieces])
-    time = PERIOD * np.arange(force.size)
-    contact = contact_with_hysteresis(time, force)
-    edges = np.flatnonzero(np.diff(contact)) + 1
-    assert (np.diff(time[np.concatenate(([0], edges))]) >= SHORTEST_PHASE_S - 1e-9).all()
 
 
 def test_touchdowns_are_when_the_force_comes_back(joints):
     signals = walk_of(joints)
-    np.testing.assert_allclose(touchdowns(signals, "Right"), STRIDE * np.arange(1, 9), atol=1.5 * PERIOD)
-    np.testing.assert_allclose(touchdowns(signals, "Left"), STRIDE * (np.arange(8) + 0.5), atol=1.5 * PERIOD)
+    np.testing.assert_allclose(events_of(signals, "Right").touchdown_times, STRIDE * np.arange(1, 9), atol=1.5 * PERIOD)
+    np.testing.assert_allclose(
+        events_of(signals, "Left").touchdown_times, STRIDE * (np.arange(8) + 0.5), atol=1.5 * PERIOD
+    )
     assert summary_of(signals)["steps"] == 16
 
 

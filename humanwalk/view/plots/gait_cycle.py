@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
-from humanwalk.measures.gait_measures import footfalls
+from humanwalk.measures.events import events_of
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, over_strides, people
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
@@ -78,7 +78,7 @@ def _three(title: str) -> Figure:
 
 def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
     """Draw a signal over the strides of a leg in steady walking; False if there was none."""
-    strides = over_strides(run.signals, footfalls(run.signals, side, run.summary["steady_from_s"]), values)
+    strides = over_strides(events_of(run.signals, side, run.summary["steady_from_s"]), values)
     if not len(strides):
         return False
     mean, sd = strides.mean(axis=0), strides.std(axis=0)

@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 
 from humanwalk.body import REFERENCE_STATURE, SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.measures.events import CONTACT_ON_N, foot_contact
+from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -90,7 +90,7 @@ def _last(run: Run, seconds: float) -> tuple[Array, npt.NDArray[np.bool_]]:
 
 def _footprints(run: Run, axes: Axes, side: Side, rows: npt.NDArray[np.bool_]) -> None:
     """Outline of the sole where it was in the middle of each contact."""
-    contact = foot_contact(run.signals, side) & rows
+    contact = events_of(run.signals, side).contact & rows
     edges = np.flatnonzero(np.diff(np.concatenate(([0], contact.astype(int), [0]))))
     x, y = (run.signals[f"{side.lower()}_sole.{axis}_m"].to_numpy() for axis in "xy")
     scale = run.scenario.subject.stature / REFERENCE_STATURE

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side, human
 from humanwalk.measures.effort import joint_names
-from humanwalk.measures.events import touchdowns
+from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
@@ -28,7 +28,7 @@ from humanwalk.view.plots.drawing import (
 
 def joint_torques(run: Run) -> Figure | None:
     """Torque of every leg joint over the last whole stride of each leg [N m]; None if there was no stride."""
-    strides = {side: touchdowns(run.signals, side)[-2:] for side in SIDES}
+    strides = {side: events_of(run.signals, side).touchdown_times[-2:] for side in SIDES}
     if any(stride.size < 2 for stride in strides.values()):
         return None
     motions = [name.removeprefix("Right") for name in joint_names(run.signals) if name.startswith("RightLeg")]

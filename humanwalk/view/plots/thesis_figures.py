@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from humanwalk.body import Side
-from humanwalk.measures.events import foot_contact
+from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import DESIRED, SIDE, Array, curve, label, legend, level, new_figure, shade
@@ -127,7 +127,7 @@ def _mark_stance(run: Run, figure: Figure, side: Side, rows: npt.NDArray[np.bool
     # Over a whole run the bands would be too many to read.
     if until < inf:
         time = run.signals[TIME].to_numpy()[rows]
-        shade(figure.axes[0], time, foot_contact(run.signals, side)[rows], f"{side.lower()} foot on the ground")
+        shade(figure.axes[0], time, events_of(run.signals, side).contact[rows], f"{side.lower()} foot on the ground")
 
 
 THESIS_PLOTS: dict[str, Plot] = {
