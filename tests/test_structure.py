@@ -48,7 +48,6 @@ PENDING: dict[str, dict[str, str]] = {
     "array": {
         "h1": "contact/asperity.py contact/contact_step.py",
         "h3": "gait/thesis_path.py",
-        "h4": "systems/gait_spline_source.py",
         "h5": "measures/effort.py measures/events.py measures/gait_measures.py measures/human_likeness.py "
         "measures/summary.py",
         "h6": "view/plots/drawing.py view/plots/ground.py view/plots/thesis_figures.py",

@@ -7,7 +7,6 @@ the other makes a start swing and lands exactly half a cycle behind it (errata E
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -52,10 +51,6 @@ class FootTarget(NamedTuple):
     pitch_rate: float
     phase: float
     in_stance: bool
-
-
-PELVIS_DEGREE = 10
-"""Degree of the pelvis' target in time: a quintic of the distance, which is a quadratic of time."""
 
 
 class PelvisTarget(NamedTuple):
@@ -163,11 +158,6 @@ class WalkingGait:
             offset * slope * speed,
             offset * (curvature * speed**2 + slope * acceleration),
         )
-
-    @property
-    def pelvis_breaks(self) -> list[float]:
-        """Times after 0 [s] between which the pelvis' target is a polynomial of degree PELVIS_DEGREE, then of 1."""
-        return sorted({time for time in (self.ramp.duration, self.start_time) if 0.0 < time < math.inf})
 
     def in_stance(self, side: Side, t: float) -> bool:
         """Whether a foot should be on the ground at t [s]."""

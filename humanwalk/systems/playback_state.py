@@ -12,8 +12,8 @@ class PlaybackState(LeafSystem):
     """The plant state in which pelvis and joints have their desired positions and velocities.
 
     Inputs:
-        pelvis_reference: (13) desired state of the pelvis in W, in the order of Drake's floating base: quaternion wxyz,
-            position [m], angular velocity [rad/s], velocity [m/s].
+        pelvis_reference: (13) desired motion of the pelvis in W, in the order of Drake's floating base: quaternion
+            wxyz, position [m], angular velocity [rad/s], velocity [m/s].
         desired_state: (2n) desired joint angles [rad], then rates [rad/s], in actuator order.
 
     Outputs:
@@ -23,21 +23,16 @@ class PlaybackState(LeafSystem):
     def __init__(self, plant: MultibodyPlant) -> None:
         """Make the system for a finalized plant with a floating pelvis."""
         super().__init__()
-        self._joints = JointMap.of(plant)
-        pelvis = plant.GetBodyByName(PELVIS)
-        self._pose = slice(pelvis.floating_positions_start(), pelvis.floating_positions_start() + 7)
-        velocity = plant.num_positions() + pelvis.floating_velocities_start_in_v()
-        self._velocity = slice(velocity, velocity + 6)
-        self._rates = plant.num_positions() + self._joints.v
+        joints, pelvis, nq = JointMap.of(plant), plant.GetBodyByName(PELVIS), plant.num_positions()
+        base_q, base_v = pelvis.floating_positions_start(), nq + pelvis.floating_velocities_start_in_v()
+        self._base = np.concatenate((np.arange(base_q, base_q + 7), np.arange(base_v, base_v + 6)))
+        self._joints = np.concatenate((joints.q, nq + joints.v))
         self._reference = self.DeclareVectorInputPort("pelvis_reference", 13)
-        self._desired = self.DeclareVectorInputPort("desired_state", 2 * len(self._joints.names))
-        self._output = self.DeclareVectorOutputPort("state", plant.num_multibody_states(), self._calc)
+        self._desired = self.DeclareVectorInputPort("desired_state", self._joints.size)
+        self.DeclareVectorOutputPort("state", plant.num_multibody_states(), self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        pelvis = self._reference.Eval(context)
-        angles, rates = np.split(self._desired.Eval(context), 2)
         state = np.zeros(output.size())
-        state[self._pose], state[self._velocity] = pelvis[:7], pelvis[7:]
-        state[self._joints.q] = angles
-        state[self._rates] = rates
+        state[self._base] = self._reference.Eval(context)
+        state[self._joints] = self._desired.Eval(context)
         output.SetFromVector(state)
