@@ -29,7 +29,7 @@ from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBo
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.pd_control import ActuatorParameters
-from humanwalk.control.whole_body_qp import WholeBodyParameters
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp

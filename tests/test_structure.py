@@ -33,8 +33,7 @@ PENDING: dict[str, dict[str, str]] = {
     "name": {
         "founder": "choices/balanced.py choices/start.py",
         "h1": "contact/leg_contact.py",
-        "h3": "control/body_dynamics.py control/whole_body_qp.py gait/arm_swing.py "
-        "systems/inverse_kinematics_solver.py systems/whole_body_controller.py",
+        "h3": "gait/arm_swing.py systems/inverse_kinematics_solver.py",
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py view/replay.py",
     },
@@ -42,7 +41,6 @@ PENDING: dict[str, dict[str, str]] = {
         "founder": "scenario.py",
         "h1": "body/anatomy.py contact/contact_step.py",
         "h2": "walking/step_planner.py",
-        "h3": "control/whole_body_qp.py",
         "h6": "cli/main.py",
     },
     "array": {

@@ -64,6 +64,11 @@ class Leg:
         return (self.ankle, self.ankle_inversion, self.ankle_rotation)
 
     @property
+    def foot_joints(self) -> tuple[str, str, str]:
+        """The joints that shape the foot and keep a posture in walking: ankle rotation, midfoot and toes."""
+        return (self.ankle_rotation, self.midfoot, self.toes)
+
+    @property
     def foot_bodies(self) -> tuple[str, str, str]:
         """The bodies that touch the ground, from the heel forward."""
         return (self.hindfoot, self.forefoot, self.toe_segment)

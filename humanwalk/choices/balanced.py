@@ -78,7 +78,7 @@ def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     tasks = noisy_tasks(walk.whole_body, scenario.start.gain_noise, np.random.default_rng((scenario.seed, TASK_GAINS)))
     controller = builder.AddNamedSystem(
         "controller",
-        WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period),
+        WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period, Plane()),
     )
     bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))

@@ -20,12 +20,12 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.contact.leg_contact import add_leg_capsules, let_legs_touch
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.control.pd_control import joint_gains
 from humanwalk.control.pd_laws import install_gains
-from humanwalk.control.whole_body_qp import is_foot_posture
 from humanwalk.numerics import Array
 from humanwalk.scenario import BalancedWalkParameters, Contact, Scenario
 from humanwalk.terrain.floor import add_level_ground
@@ -119,7 +119,7 @@ def human_gains(scenario: Scenario) -> tuple[Array, Array]:
 
 def balanced_gains(joint_names: Sequence[str], walk: BalancedWalkParameters) -> tuple[Array, Array]:
     """kp and kd of the balanced walker: only the small joints of the feet are held, the rest is damped."""
-    held = np.array([is_foot_posture(name) for name in joint_names])
+    held = np.isin(joint_names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
     return np.where(held, walk.foot_stiffness, 0.0), np.where(held, walk.foot_damping, walk.joint_damping)
 
 

@@ -1,4 +1,4 @@
-"""Everything that a whole-body controller needs to know of the body at one state: inertia, Jacobians, biases."""
+"""Inertia, Jacobians and bias accelerations of the body at one state."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from pydrake.multibody.tree import JacobianWrtVariable, MultibodyForces
 from humanwalk.body import SIDES, Side
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
-from humanwalk.numerics import Array, Indices
+from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import cross_matrix
 from humanwalk.numerics.scalars import clip
 from humanwalk.walking.walking_reference import BodyState, FootState
 
@@ -22,17 +23,13 @@ BY_V = JacobianWrtVariable.kV
 ORIGIN = np.zeros(3)
 
 
-@dataclass(frozen=True)
-class Directions:
-    """Directions d in W, shape (k, 3), and the linear map from an arm r to all moments r x d, shape (3, 3 k)."""
+class PointMotion(NamedTuple):
+    """A point in W: position (3,) [m], velocity (3,) [m/s], and acceleration = J v' + bias [m/s2]; J is (3, nv)."""
 
-    d_W: Array
-    moments: Array
-
-    @staticmethod
-    def of(d_W: Array) -> Directions:
-        """The directions of the rows of an array."""
-        return Directions(d_W, np.hstack([_cross_matrix(d) for d in d_W]))
+    position: Array
+    J: Array
+    velocity: Array
+    bias: Array
 
 
 class FrameMotion(NamedTuple):
@@ -47,78 +44,53 @@ class FrameMotion(NamedTuple):
     V_WB: Array
     bias: Array
 
-    def point(self, p_BoP_B: Array) -> tuple[Array, Array, Array, Array]:
-        """A point P fixed to B: position (3,), Jacobian (3, nv), velocity (3,), bias of the acceleration (3,)."""
-        r = self.R_WB.dot(p_BoP_B)
-        w = _cross_matrix(self.V_WB[:3])
-        # What an angular and a translational vector of B are at P: v + w x r.
-        to_P = np.hstack((-_cross_matrix(r), np.eye(3)))
-        return self.p_WB + r, to_P.dot(self.J), to_P.dot(self.V_WB), to_P.dot(self.bias) + w.dot(w.dot(r))
+    def point(self, p_BP: Array) -> PointMotion:
+        """A point P fixed to B, from its position in B [m]."""
+        r = self.R_WB @ p_BP
+        w = cross_matrix(self.V_WB[:3])
+        # The velocity of P is v + w x r, and its acceleration in addition has w x (w x r).
+        to_P = np.hstack((-cross_matrix(r), np.eye(3)))
+        return PointMotion(self.p_WB + r, to_P @ self.J, to_P @ self.V_WB, to_P @ self.bias + w @ (w @ r))
 
 
 @dataclass(frozen=True)
 class Dynamics:
     """The body at one state; M v' + h = tau + J' f, with gravity and damping in h.
 
-    The motions of some bodies' frames and of the centre of mass are told in rows, all in W: of each body its angular
-    and its translational velocity, in the order of `bodies`, then the velocity of the centre of mass.
-
-    q, v: positions and velocities. M: (nv, nv). h: (nv,) [N m, N].
-    com: centre of mass (3,) [m].
-    bodies: names of pelvis, ribs and the bodies of the feet. X_WB: rotation matrix and position of each, (n, 3, 4) [m].
-    velocity: (6 n + 3,) = J v [rad/s, m/s]; its derivative is J v' + bias. J: (6 n + 3, nv). bias: (6 n + 3,).
+    Attributes:
+        q, v: positions and velocities of the plant.
+        M: mass matrix, (nv, nv).
+        h: (nv,) [N m, N].
+        com: center of mass.
+        bodies: names of pelvis, chest and the bodies of the feet, n of them.
+        X_WB: rotation matrix and position of each body frame, (n, 3, 4) [m].
+        V_WB: spatial velocity of each in W, (n, 6) [rad/s, m/s]; its derivative is J v' + bias.
+        J: (n, 6, nv).
+        bias: (n, 6).
     """
 
     q: Array
     v: Array
     M: Array
     h: Array
-    com: Array
+    com: PointMotion
     bodies: tuple[str, ...]
     X_WB: Array
-    velocity: Array
+    V_WB: Array
     J: Array
     bias: Array
 
     def frame(self, body: str) -> FrameMotion:
-        """One body's frame."""
+        """The frame of one body."""
         i = self.bodies.index(body)
-        X_WB, rows = self.X_WB[i], slice(6 * i, 6 * i + 6)
-        return FrameMotion(X_WB[:, :3], X_WB[:, 3], self.J[rows], self.velocity[rows], self.bias[rows])
-
-    @property
-    def com_J(self) -> Array:
-        """Jacobian of the centre of mass (3, nv)."""
-        return self.J[-3:]
-
-    @property
-    def com_bias(self) -> Array:
-        """Acceleration of the centre of mass where v' = 0, (3,) [m/s2]."""
-        return self.bias[-3:]
-
-    def along(self, which: Indices, p_BoP_W: Array, directions: Directions) -> Array:
-        """Jacobian of the velocities of points along directions; shape (points x directions, nv).
-
-        Args:
-            which: place of each point's body, (k,).
-            p_BoP_W: from the body's origin to the point, in W, shape (k, 3) [m].
-            directions: the same at every point.
-        """
-        k, d = len(which), len(directions.d_W)
-        # Of every point and direction the moment and the direction, which a product takes to the joints.
-        wrenches = np.empty((k, d, 6))
-        wrenches[..., :3] = p_BoP_W.dot(directions.moments).reshape(k, d, 3)
-        wrenches[..., 3:] = directions.d_W
-        J = self.J[:-3].reshape(len(self.bodies), 6, -1)
-        along: Array = np.matmul(wrenches, J.take(which, axis=0)).reshape(k * d, self.v.size)
-        return along
+        return FrameMotion(self.X_WB[i, :, :3], self.X_WB[i, :, 3], self.J[i], self.V_WB[i], self.bias[i])
 
 
 class BodyDynamics:
     """Computes `Dynamics` with a plant and a context of its own.
 
     Args:
-        plant: finalised model of the body whose floating base is `Pelvis`, its velocities the first.
+        plant: finalized model of the body; its floating base is the pelvis, whose velocities come first.
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
@@ -130,7 +102,7 @@ class BodyDynamics:
         self.bodies = (PELVIS, CHEST, *(body for leg in LEGS.values() for body in leg.foot_bodies))
         bodies = [plant.GetBodyByName(name) for name in self.bodies]
         self._frames = [(body.body_frame(), int(body.index())) for body in bodies]
-        self._ankles = {side: plant.GetFrameByName(f"{side}Leg_Ankle") for side in SIDES}
+        self._ankles = {side: plant.GetFrameByName(LEGS[side].hindfoot) for side in SIDES}
         self._damping = np.zeros(plant.num_velocities())
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
@@ -145,24 +117,26 @@ class BodyDynamics:
         plant.SetPositionsAndVelocities(context, state)
         q, v = state[: plant.num_positions()], state[plant.num_positions() :]
         n = len(self._frames)
-        X_WB, J, bias = np.empty((n, 3, 4)), np.empty((6 * n + 3, v.size)), np.empty(6 * n + 3)
+        X_WB, J, bias = np.empty((n, 3, 4)), np.empty((n, 6, v.size)), np.empty((n, 6))
         accelerations = plant.CalcSpatialAccelerationsFromVdot(context, self._no_acceleration)
         for i, (frame, body) in enumerate(self._frames):
-            rows = slice(6 * i, 6 * i + 6)
             X_WB[i] = frame.CalcPoseInWorld(context).GetAsMatrix34()
-            J[rows] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
-            bias[rows] = accelerations[body].get_coeffs()
+            J[i] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
+            bias[i] = accelerations[body].get_coeffs()
         M = plant.CalcMassMatrix(context)
-        # To a body that is accelerated upward at rest, inertia is what gravity is to one that is not.
+        # Inverse dynamics with the base accelerated upward at g: the effect of gravity.
         h = plant.CalcInverseDynamics(context, self._upward, self._no_forces)
-        # Translational rows of a floating base: momentum and its rate (the pelvis' velocities are given in W).
-        np.divide(M[3:6], self.mass, out=J[-3:])
-        bias[-3:] = h[3:6] / self.mass - self._upward[3:6]
-        com = plant.CalcCenterOfMassPositionInWorld(context)
-        return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J.dot(v), J, bias)
+        # The translational rows of the floating base are momentum and its rate (the pelvis' velocities are given in W).
+        com = PointMotion(
+            position=plant.CalcCenterOfMassPositionInWorld(context),
+            J=M[3:6] / self.mass,
+            velocity=M[3:6] @ v / self.mass,
+            bias=h[3:6] / self.mass - self._upward[3:6],
+        )
+        return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
 
     def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float]) -> BodyState:
-        """What the step planner wants to know, from a plant state [q; v] and the feet's vertical forces [N]."""
+        """The body as the step planner takes it, from a plant state [q; v] and the vertical forces of the feet [N]."""
         plant, context = self.plant, self._context
         plant.SetPositionsAndVelocities(context, state)
         x, y, z = plant.CalcCenterOfMassPositionInWorld(context).tolist()
@@ -185,8 +159,3 @@ class BodyDynamics:
             pitch_rate=math.cos(yaw) * wy - math.sin(yaw) * wx,
             force=force,
         )
-
-
-def _cross_matrix(a: Array) -> Array:
-    x, y, z = a.tolist()
-    return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from humanwalk.control.whole_body_qp import PrescribedGains, TaskGains, WholeBodyParameters
+from humanwalk.control.whole_body_parameters import PrescribedGains, TaskGains, WholeBodyParameters
 from humanwalk.numerics import Array
 
 

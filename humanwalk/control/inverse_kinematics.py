@@ -19,9 +19,8 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from scipy.linalg.lapack import dgesdd, dgesv
 
-from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain
+from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain, rotation_vector
 from humanwalk.numerics import Array, Indices
-from humanwalk.numerics.rotation import rotation_vector
 from humanwalk.quantity import quantity
 
 Vector6 = tuple[float, ...]

@@ -1,28 +1,29 @@
-"""From one orientation to another, in plain floats: arrays as short as these take longer."""
+"""Rotations as 3 x 3 matrices and as rotation vectors."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from pydrake.math import RotationMatrix
 
-Vector = tuple[float, float, float]
+from humanwalk.numerics import Array
+
+_LEVI_CIVITA = -np.cross(np.eye(3)[:, None], np.eye(3)).reshape(3, 9)
 
 
-def rotation_vector(axes: Sequence[Sequence[float]], goal: Sequence[Sequence[float]]) -> Vector:
-    """Axis times angle [rad] of the rotation that takes a frame's axes x, y, z to those of another."""
-    # The cross products of the axes add up to twice sine times axis, the dot products to the trace.
-    x = y = z = trace = 0.0
-    for (ax, ay, az), (gx, gy, gz) in zip(axes, goal, strict=True):
-        x += ay * gz - az * gy
-        y += az * gx - ax * gz
-        z += ax * gy - ay * gx
-        trace += ax * gx + ay * gy + az * gz
-    sine2, cosine2 = math.hypot(x, y, z), trace - 1.0
-    if cosine2 < 0.0:
-        # Beyond a right angle the cross products lose the axis.
-        turn = RotationMatrix(np.array(goal).T @ np.array(axes)).ToAngleAxis()
-        x, y, z = turn.angle() * turn.axis()
-        return x, y, z
-    scale = math.atan2(sine2, cosine2) / sine2 if sine2 > 2e-9 else 0.5
-    return scale * x, scale * y, scale * z
+def rotation_vector(R_WA: Array, R_WB: Array) -> Array:
+    """Axis times angle [rad], in W, of the rotation that turns frame A into frame B; shape (3,)."""
+    rotation = RotationMatrix(R_WB @ R_WA.T).ToAngleAxis()
+    vector: Array = rotation.angle() * rotation.axis()
+    return vector
+
+
+def yaw_pitch(yaw: float, pitch: float) -> Array:
+    """Rz(yaw) Ry(pitch), shape (3, 3)."""
+    c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    return np.array(((c * cp, -s, c * sp), (s * cp, c, s * sp), (-sp, 0.0, cp)))
+
+
+def cross_matrix(a: Array) -> Array:
+    """The matrix of the cross product a x; shape (..., 3, 3) for (..., 3)."""
+    matrix: Array = (a @ _LEVI_CIVITA).reshape(*a.shape, 3)
+    return matrix

@@ -1,4 +1,4 @@
-"""LeafSystem: the whole-body quadratic program in time."""
+"""LeafSystem: the whole-body quadratic program, solved periodically."""
 
 from collections.abc import Mapping
 
@@ -8,28 +8,35 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
+from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp, is_foot_posture
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
+from humanwalk.systems.signal import Signal
+from humanwalk.terrain import Terrain
 from humanwalk.walking.walking_reference import WalkingReference
 
-STATUS = ("solved", "failures", "failures_in_a_row")
+STATUS_COLUMNS = ("qp.solved", "qp.failures", "qp.failures_in_a_row")
+
+ELBOW_PER_SHOULDER = 0.5
+"""Flexion of an elbow per forward flexion of its shoulder (our choice)."""
 
 
 class WholeBodyController(LeafSystem):
-    """Torques and desired rates of all joints, in a periodic discrete update.
+    """Torques and desired rates of all joints from a whole-body program, updated periodically.
 
-    Where the program has no solution the torques of the last one are held for `hold` seconds; after that the joints
-    are only damped, until there is a solution again.
+    After a QP failure the last torques are held for `hold` seconds; then the joints are only damped until a program
+    is solved again.
 
     Inputs:
         state: plant state [q; v].
         plan: WalkingReference.
 
-    Outputs (all show state, so reading them solves nothing):
-        torque: (n) feed-forward for the actuators, in actuator order [N m].
-        desired_state: (2n) angles [rad] and rates [rad/s] for the actuators' own gains, in actuator order.
-        sample_time: (1) the time at which they were computed [s].
-        status: (3) 1 where the last program was solved, else 0; failures so far; failures in a row.
+    Outputs (all are state; evaluating them solves nothing), n joints in actuator order:
+        torque: (n) feedforward torque of the actuators [N m].
+        desired_state: (2n) angles [rad] and rates [rad/s] for the gains of the actuators.
+        sample_time: (1) time of the last update [s].
+        status: (3) 1 if the last program was solved, else 0; number of QP failures; of consecutive QP failures.
     """
 
     def __init__(
@@ -39,75 +46,81 @@ class WholeBodyController(LeafSystem):
         parameters: WholeBodyParameters,
         posture: Mapping[str, float],
         period: float,
+        terrain: Terrain,
     ) -> None:
         """Make the controller.
 
         Args:
-            plant: finalised model of the body, in a context of its own.
+            plant: finalized model of the body.
             skeleton: the same body, for the contact points of its soles.
             parameters: tasks and limits.
-            posture: joint angles [rad] by name around which arms and back are held; 0 where not named.
-            period: time between solutions [s].
+            posture: joint angles [rad] by name around which arms and spine are held; 0 if not named.
+            period: time between updates [s].
+            terrain: on which the body walks.
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
-        self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters)
+        self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters, terrain)
         self._period = period
         self._hold = parameters.hold
-        joints = self._dynamics.joints
-        self._n = n = len(joints.names)
-        self._place = joints.v - 6
-        self._q = joints.q[np.argsort(self._place)]
-        moved = ("ArmShoulderMotion", "ArmElbowMotion", "LegFootToesMotion")
-        self._moved = [[self._qp.names.index(f"{side}{joint}") for joint in moved] for side in SIDES]
-        self._rest = np.array([posture.get(name, 0.0) for name in self._qp.names])
-        self._is_foot = np.array([is_foot_posture(name) for name in self._qp.names])
+        joints, names = self._dynamics.joints, self._qp.names
+        n = len(names)
+        # The program has its joints in the order of the velocities, the outputs in actuator order.
+        self._to_actuators = joints.v - 6
+        self._q = joints.q[np.argsort(joints.v)]
+        self._rest = np.array([posture.get(name, 0.0) for name in names])
+        self._moving = [
+            [names.index(joint) for joint in (ARMS[side].shoulder_flexion, ARMS[side].elbow, LEGS[side].toes)]
+            for side in SIDES
+        ]
+        self._is_held = np.isin(names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
-        groups = [self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS))]
-        self._groups = groups
-        self._torque_output = self.DeclareStateOutputPort("torque", groups[0])
-        self._desired_output = self.DeclareStateOutputPort("desired_state", groups[1])
-        self._time_output = self.DeclareStateOutputPort("sample_time", groups[2])
-        self._status_output = self.DeclareStateOutputPort("status", groups[3])
-        self.DeclareInitializationDiscreteUpdateEvent(self._solve)
-        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._solve)
+        self._torque, self._desired, self._time, self._status = (
+            self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS_COLUMNS))
+        )
+        self.DeclareStateOutputPort("torque", self._torque)
+        self.DeclareStateOutputPort("desired_state", self._desired)
+        self.DeclareStateOutputPort("sample_time", self._time)
+        status = self.DeclareStateOutputPort("status", self._status)
+        self.signals = (Signal("qp_status", status, STATUS_COLUMNS),)
+        self.DeclareInitializationDiscreteUpdateEvent(self._update)
+        self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
 
-    def _solve(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
+    def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context)
         body = self._dynamics.at(self._state.Eval(context))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         solution = self._qp.solve(body, reference, posture)
 
-        _, failures, in_a_row = context.get_discrete_state(self._groups[3]).value().tolist()
+        _, failures, in_a_row = context.get_discrete_state(self._status).value()
         if solution is not None:
-            torque, in_a_row = solution.torque.take(self._place), 0.0
+            torque, in_a_row = solution.torque[self._to_actuators], 0.0
             rate = v + self._period * solution.acceleration[6:]
         else:
             failures, in_a_row = failures + 1.0, in_a_row + 1.0
+            is_held = in_a_row * self._period <= self._hold
+            torque = is_held * context.get_discrete_state(self._torque).value()
             rate = np.zeros_like(v)
-            held = in_a_row * self._period <= self._hold
-            torque = context.get_discrete_state(self._groups[0]).value() if held else np.zeros_like(v)
-        desired = np.where(self._is_foot, (posture.angle, posture.rate), (q, rate))
-        values = (
-            torque,
-            desired.take(self._place, axis=1).ravel(),
-            np.array((context.get_time(),)),
-            np.array((float(solution is not None), failures, in_a_row)),
-        )
-        for group, value in zip(self._groups, values, strict=True):
-            discrete_state.set_value(group, value)
+        # The actuators hold the joints of the feet at their posture; of all others they only damp the rate.
+        angle, rate = np.where(self._is_held, (posture.angle, posture.rate), (q, rate))
+        discrete_state.set_value(self._torque, torque)
+        discrete_state.set_value(self._desired, np.concatenate((angle[self._to_actuators], rate[self._to_actuators])))
+        discrete_state.set_value(self._time, np.array([context.get_time()]))
+        discrete_state.set_value(self._status, np.array([solution is not None, failures, in_a_row], dtype=float))
         return EventStatus.Succeeded()
 
     def _posture(self, reference: WalkingReference) -> Posture:
-        angle, rate = self._rest.copy(), np.zeros(self._n)
+        """Rest posture with swinging arms and the toes of the reference."""
+        angle, rate = self._rest.copy(), np.zeros_like(self._rest)
         feet = (reference.foot(side) for side in SIDES)
-        moves = zip(self._moved, reference.shoulder_flexion, feet, strict=True)
-        for (shoulder, elbow, toes), (swing, swing_rate), foot in moves:
+        for (shoulder, elbow, toes), (swing, swing_rate), foot in zip(
+            self._moving, reference.shoulder_flexion, feet, strict=True
+        ):
             angle[shoulder] += swing
             rate[shoulder] = swing_rate
-            angle[elbow] += 0.5 * max(swing, 0.0)
+            angle[elbow] += ELBOW_PER_SHOULDER * max(swing, 0.0)
             angle[toes], rate[toes] = foot.toes
         return Posture(angle, rate)

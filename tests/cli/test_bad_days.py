@@ -219,8 +219,7 @@ def broken_from(monkeypatch, begin, breaks):
 
 
 def not_a_number(self, context, discrete):
-    group = self._groups[0]
-    discrete.set_value(group, np.full(discrete.value(group).size, np.nan))
+    discrete.set_value(0, np.full(discrete.value(0).size, np.nan))
 
 
 def throw(self, context, discrete):
@@ -348,7 +347,7 @@ def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
 def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
     monkeypatch, tmp_path, phase, begin, breaks
 ):
-    solve = whole_body_controller.WholeBodyController._solve
+    solve = whole_body_controller.WholeBodyController._update
 
     def broken(self, context, discrete):
         status = solve(self, context, discrete)
@@ -356,7 +355,7 @@ def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
             breaks(self, context, discrete)
         return status
 
-    monkeypatch.setattr(whole_body_controller.WholeBodyController, "_solve", broken)
+    monkeypatch.setattr(whole_body_controller.WholeBodyController, "_update", broken)
     points = "[{time: 0.1, forward: 0.5}]"
     outcome = simulate(load_scenario("walk", {"duration": str(begin + 0.1), "balanced.command.points": points}))
     run = Run.open(outcome.save(tmp_path / "run").path)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from humanwalk.control.gain_noise import gain_factors, noisy_tasks
-from humanwalk.control.whole_body_qp import PrescribedGains, TaskGains, WholeBodyParameters
+from humanwalk.control.whole_body_parameters import PrescribedGains, TaskGains, WholeBodyParameters
 
 CALM = WholeBodyParameters()
 

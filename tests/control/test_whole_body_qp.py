@@ -1,13 +1,17 @@
-"""The whole-body program: Newton's laws, the ground's and the muscles' limits, and what happens without a solution."""
+"""The whole-body program: Newton's laws, limits of friction and torque, terrain, and QP failures."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from humanwalk.body import contact_spheres
+from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import BodyDynamics
-from humanwalk.control.whole_body_qp import Posture, WholeBodyParameters, WholeBodyQp
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
+from humanwalk.numerics.rotation import yaw_pitch
+from humanwalk.terrain import Plane
 from humanwalk.walking.swing_foot import PlanarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
@@ -22,31 +26,31 @@ def dynamics(plant):
 
 @pytest.fixture(scope="module")
 def qp(dynamics, skeleton):
-    return WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS)
+    return WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
 
 
 def body_at(dynamics, flexion=0.12, v=None):
     """Standing with bent knees, soles on the ground."""
     plant, joints = dynamics.plant, dynamics.joints
     q = plant.GetPositions(plant.CreateDefaultContext())
-    for side in ("Right", "Left"):
-        for joint, times in (("Femur", 1), ("Tibia", 2), ("Ankle", 1)):
-            q[joints.q[joints.names.index(f"{side}Leg{joint}Motion")]] = times * flexion
+    for leg in LEGS.values():
+        for joint, times in ((leg.hip_flexion, 1), (leg.knee, 2), (leg.ankle, 1)):
+            q[joints.q[joints.names.index(joint)]] = times * flexion
     q[6] -= (0.4242 + 0.439767) * (1 - np.cos(flexion)) + 0.0003
     return dynamics.at(np.concatenate((q, np.zeros(plant.num_velocities()) if v is None else v)))
 
 
-def reference_for(body, zmp=None, right=None, left=None):
+def reference_for(body, zmp=None, right=None, left=None, ground_height=0.0):
     flat = FootReference(FootTask.FLAT, 1.0, 0.0)
-    com = complex(body.com[0], body.com[1])
+    com = complex(body.com.position[0], body.com.position[1])
     return WalkingReference(
         phase=Phase.STAND,
         phase_time=0.0,
         zmp=com if zmp is None else zmp,
         dcm=com,
         dcm_reference=com,
-        com_height=(float(body.com[2]), 0.0, 0.0),
-        ground_height=0.0,
+        com_height=(float(body.com.position[2]), 0.0, 0.0),
+        ground_height=ground_height,
         right=right or flat,
         left=left or flat,
         pelvis_yaw=0.0,
@@ -65,11 +69,11 @@ def newton_residual(body, solution, skeleton):
     total = body.M @ solution.acceleration + body.h
     for sphere, f in zip(contact_spheres(skeleton), solution.forces, strict=True):
         lowest = np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius))
-        total -= body.frame(sphere.body).point(lowest)[1].T @ f
+        total -= body.frame(sphere.body).point(lowest).J.T @ f
     return total
 
 
-def test_standing_the_ground_carries_the_weight(dynamics, qp):
+def test_in_standing_the_contact_forces_carry_the_weight(dynamics, qp):
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
     assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=2.0)
@@ -81,19 +85,19 @@ def test_the_floating_base_obeys_newton(dynamics, qp, skeleton):
     assert newton_residual(body, solution, skeleton)[:6] == pytest.approx(np.zeros(6), abs=0.05)
 
 
-def test_the_torques_are_what_these_forces_and_accelerations_need(dynamics, qp, skeleton):
+def test_the_torques_are_the_inverse_dynamics_of_accelerations_and_forces(dynamics, qp, skeleton):
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
     assert newton_residual(body, solution, skeleton)[6:] == pytest.approx(solution.torque, abs=1e-6)
 
 
-def test_the_centre_of_pressure_is_the_zero_moment_point_that_is_asked(dynamics, qp):
+def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(dynamics, qp):
     """At rest, with a small shift that needs hardly any angular momentum."""
     body = body_at(dynamics)
-    zmp = complex(body.com[0] + 0.01, body.com[1])
+    zmp = complex(body.com.position[0] + 0.01, body.com.position[1])
     solution = qp.solve(body, reference_for(body, zmp=zmp), rest(qp))
-    acceleration = body.com_J @ solution.acceleration + body.com_bias
-    assert acceleration[0] == pytest.approx(-9.81 / body.com[2] * 0.01, abs=0.03)
+    acceleration = body.com.J @ solution.acceleration + body.com.bias
+    assert acceleration[0] == pytest.approx(-9.81 / body.com.position[2] * 0.01, abs=0.03)
 
 
 @pytest.mark.parametrize("zmp", [0.1 + 0j, -0.3 + 0j, 0.5 + 0.5j, 1.0 - 1.0j])
@@ -106,25 +110,25 @@ def test_forces_stay_in_the_friction_pyramid_and_torques_in_their_limits(dynamic
     assert (np.abs(solution.torque) <= qp.limits + 1e-6).all()
 
 
-def test_a_foot_in_the_air_presses_on_nothing(dynamics, qp):
+def test_a_foot_in_the_air_carries_no_force(dynamics, qp):
     body = body_at(dynamics)
-    ankle = body.frame("RightLeg_Ankle").p_WB
+    ankle = body.frame(LEGS["Right"].hindfoot).p_WB
     swing = FootReference(
         FootTask.SWING, 0.0, 0.0, PlanarMotion(complex(ankle[0], ankle[1])), (0.15, 0.0, 0.0), (0.0, 0.0, 0.0)
     )
     solution = qp.solve(body, reference_for(body, zmp=0.02 + 0.0875j, right=swing), rest(qp))
-    assert np.abs(solution.forces[:6]).max() == 0.0
-    lift = body.frame("RightLeg_Ankle").J @ solution.acceleration
+    assert solution.forces[:6] == pytest.approx(np.zeros((6, 3)))
+    lift = body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration
     assert lift[5] > 1.0
 
 
-def test_a_knee_that_is_nearly_straight_is_not_straightened(dynamics, qp):
+def test_a_nearly_straight_knee_is_not_extended_further(dynamics, qp):
     body = body_at(dynamics, flexion=0.015)
     high = replace(reference_for(body), com_height=(1.2, 0.0, 0.0))
     solution = qp.solve(body, high, rest(qp))
-    knee = qp.names.index("RightLegTibiaMotion")
-    angle = body.q[dynamics.joints.q[dynamics.joints.names.index("RightLegTibiaMotion")]]
-    bound = PARAMETERS.range_stiffness * (PARAMETERS.knee_margin - angle)
+    knee = qp.names.index(LEGS["Right"].knee)
+    angle = body.q[dynamics.joints.q[dynamics.joints.names.index(LEGS["Right"].knee)]]
+    bound = PARAMETERS.joint_limit_stiffness * (PARAMETERS.knee_margin - angle)
     assert solution.acceleration[6 + knee] >= bound - 0.1
 
 
@@ -133,13 +137,97 @@ def test_without_ground_under_the_feet_the_body_falls(dynamics, qp):
     q[6] += 0.3
     body = dynamics.at(np.concatenate((q, np.zeros(48))))
     solution = qp.solve(body, reference_for(body), rest(qp))
-    acceleration = body.com_J @ solution.acceleration + body.com_bias
+    acceleration = body.com.J @ solution.acceleration + body.com.bias
     assert acceleration[2] == pytest.approx(-9.81, abs=0.01)
 
 
-def test_a_program_without_a_solution_gives_none_and_the_next_is_solved(dynamics, skeleton):
-    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS)
+def test_an_infeasible_program_has_no_solution_and_does_not_affect_the_next(dynamics, skeleton):
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
     body = body_at(dynamics)
     broken = replace(body, h=body.h + 1e6)
     assert qp.solve(broken, reference_for(body), rest(qp)) is None
     assert qp.solve(body, reference_for(body), rest(qp)) is not None
+
+
+# ---- terrain
+
+
+@dataclass(frozen=True)
+class RaisedPlane(Plane):
+    """A plane that does not contain the origin."""
+
+    offset: float = 0.3
+
+    def height(self, xy):
+        return super().height(xy) + self.offset
+
+
+def raised(dynamics, body, offset):
+    q = body.q.copy()
+    q[6] += offset
+    return dynamics.at(np.concatenate((q, body.v)))
+
+
+def test_ground_and_body_can_be_raised_together(dynamics, qp, skeleton):
+    terrain = RaisedPlane()
+    on_raised = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
+    body = body_at(dynamics)
+    zmp = complex(*body.com.position[:2]) + 0.02
+    level = qp.solve(body, reference_for(body, zmp), rest(qp))
+    body = raised(dynamics, body, terrain.offset)
+    high = on_raised.solve(body, reference_for(body, zmp, ground_height=terrain.offset), rest(qp))
+    assert high.forces == pytest.approx(level.forces, abs=1e-4)
+    assert high.torque == pytest.approx(level.torque, abs=1e-4)
+
+
+def on_slope(dynamics, slope, foot_pitch=0.0):
+    """Standing with bent knees on a plane with a slope along x, feet pitched relative to the plane.
+
+    The pelvis is turned with the plane, so that both legs are as on level ground.
+    """
+    q = body_at(dynamics).q.copy()
+    R = yaw_pitch(0.0, -slope)
+    q[:4] = (np.cos(0.5 * slope), 0.0, -np.sin(0.5 * slope), 0.0)
+    q[4:7] = R @ q[4:7]
+    for leg in LEGS.values():
+        q[dynamics.joints.q[dynamics.joints.names.index(leg.ankle)]] -= foot_pitch
+    return dynamics.at(np.concatenate((q, np.zeros(48))))
+
+
+@pytest.mark.parametrize("slope", [-0.2, -0.1, 0.1, 0.2])
+def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(dynamics, skeleton, slope):
+    terrain = Plane(slope=slope)
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
+    body = on_slope(dynamics, slope)
+    *_, contacts = qp.program(body, reference_for(body), rest(qp))
+    assert contacts.points.tolist() == list(range(12))
+    solution = qp.solve(body, reference_for(body), rest(qp))
+    f_S = solution.forces @ terrain.axes(np.zeros(2)).T
+    assert (np.abs(f_S[:, 0]) + np.abs(f_S[:, 1]) <= PARAMETERS.friction * f_S[:, 2] + 1e-3).all()
+    assert newton_residual(body, solution, skeleton)[:6] == pytest.approx(np.zeros(6), abs=0.05)
+
+
+@pytest.mark.parametrize("slope", [-0.1, 0.0, 0.1])
+@pytest.mark.parametrize("pitch", [-0.1, 0.1])
+def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(dynamics, skeleton, slope, pitch):
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane(slope=slope))
+    body = on_slope(dynamics, slope, pitch)
+    landed = FootReference(FootTask.HEEL_STRIKE, 1.0, 0.0)
+    solution = qp.solve(body, reference_for(body, right=landed), rest(qp))
+    turning = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[1]
+    parallel = on_slope(dynamics, slope)
+    unturned = body.frame(LEGS["Right"].hindfoot).R_WB @ parallel.frame(LEGS["Right"].hindfoot).R_WB.T
+    assert np.arcsin(unturned[0, 2]) == pytest.approx(pitch, abs=1e-9)
+    assert turning * pitch < -1.0
+
+
+def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics, skeleton):
+    slope = 0.2
+    terrain = Plane(slope=slope)
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
+    body = raised(dynamics, on_slope(dynamics, slope), 0.05)
+    solution = qp.solve(body, reference_for(body), rest(qp))
+    acceleration = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[3:]
+    normal = terrain.axes(np.zeros(2))[2]
+    assert normal @ acceleration < -1.0
+    assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.1)

@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from humanwalk.body import SIDES, contact_spheres, sole_patches
 from humanwalk.contact.asperity import AsperityParameters, normal_force
-from humanwalk.control.whole_body_qp import WholeBodyParameters
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 

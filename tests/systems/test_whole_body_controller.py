@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from humanwalk.control.whole_body_qp import WholeBodyParameters
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
@@ -14,7 +14,7 @@ PERIOD = 0.004
 
 @pytest.fixture
 def controller(plant, skeleton):
-    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {"LeftArmElbowMotion": 0.4}, PERIOD)
+    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {"LeftArmElbowMotion": 0.4}, PERIOD, Plane())
 
 
 @pytest.fixture

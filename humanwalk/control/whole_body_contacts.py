@@ -1,0 +1,126 @@
+"""Contacts of the whole-body program: points under the feet, and the edges of their friction pyramids."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from humanwalk.body import SIDES, Side
+from humanwalk.body.contact import ContactSphere
+from humanwalk.body.limbs import LEGS
+from humanwalk.control.body_dynamics import Dynamics
+from humanwalk.numerics import Array, Indices, Mask
+from humanwalk.numerics.rotation import cross_matrix
+from humanwalk.terrain import Terrain
+from humanwalk.walking.walking_reference import FootTask, WalkingReference
+
+
+@dataclass(frozen=True)
+class Soles:
+    """The k contact points under both feet, followed by the middle of the heel of each foot in the order of SIDES.
+
+    Attributes:
+        body: index of each point's body among those of `Dynamics`, (k + 2,).
+        p_BP: in that body's frame [m], (k + 2, 3).
+        side: index of the foot of each contact point in SIDES, (k,).
+        is_heel: whether a contact point is under the hindfoot, (k,).
+    """
+
+    body: Indices
+    p_BP: Array
+    side: Indices
+    is_heel: Mask
+
+    @staticmethod
+    def of(spheres: Sequence[ContactSphere], bodies: Sequence[str]) -> Soles:
+        """The lowest points of contact spheres, in their order, with flat feet.
+
+        Args:
+            spheres: of both feet.
+            bodies: names of the bodies of `Dynamics`.
+        """
+        points = np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])
+        under = np.array([sphere.body for sphere in spheres])
+        hindfeet = [LEGS[side].hindfoot for side in SIDES]
+        heels = [points[under == hindfoot].mean(axis=0) for hindfoot in hindfeet]
+        feet = [LEGS[side].foot_bodies for side in SIDES]
+        return Soles(
+            body=np.array([bodies.index(name) for name in (*under, *hindfeet)]),
+            p_BP=np.concatenate((points, heels)),
+            side=np.array([[name in foot for foot in feet].index(True) for name in under]),
+            is_heel=np.isin(under, hindfeet),
+        )
+
+    def on(self, terrain: Terrain, body: Dynamics) -> SolesOnTerrain:
+        """The points of the soles relative to the terrain below them."""
+        X_WB = body.X_WB[self.body]
+        r_W = (X_WB[:, :, :3] @ self.p_BP[:, :, None])[:, :, 0]
+        p_W = X_WB[:, :, 3] + r_W
+        R_SW = terrain.axes(p_W[:, :2])
+        return SolesOnTerrain(self, r_W, (p_W[:, 2] - terrain.height(p_W[:, :2])) * R_SW[:, 2, 2], R_SW)
+
+
+class SolesOnTerrain(NamedTuple):
+    """The points of `Soles` at one state.
+
+    Attributes:
+        soles: the points.
+        r_W: from the origin of each point's body to the point, in W [m], (k + 2, 3).
+        height: above the terrain along its normal [m], (k + 2,).
+        R_SW: axes of the terrain below each point, (k + 2, 3, 3).
+    """
+
+    soles: Soles
+    r_W: Array
+    height: Array
+    R_SW: Array
+
+    def heel(self, side: Side) -> tuple[Array, float, Array]:
+        """Middle of a heel: position in the hindfoot's frame [m], height above the terrain [m], R_WS of the terrain."""
+        i = SIDES.index(side) - len(SIDES)
+        return self.soles.p_BP[i], float(self.height[i]), self.R_SW[i].T
+
+    def contacts(self, body: Dynamics, reference: WalkingReference, edges_S: Array, contact_height: float) -> Contacts:
+        """The points that can carry a force.
+
+        Args:
+            body: at this state.
+            reference: loads of the feet.
+            edges_S: edges of a friction pyramid in the axes of the terrain, (edges, 3).
+            contact_height: maximum height of a point in contact above the terrain [m].
+        """
+        soles = self.soles
+        feet = [reference.foot(side) for side in SIDES]
+        load = np.array([foot.load for foot in feet])[soles.side]
+        load[soles.is_heel & np.array([foot.task is FootTask.HEEL_OFF for foot in feet])[soles.side]] = 0.0
+        (points,) = np.nonzero((self.height[: load.size] < contact_height) & (load > 0.0))
+        J = body.J[soles.body[points]]
+        # The velocity of a point is v + w x r.
+        J_points = J[:, 3:] - cross_matrix(self.r_W[points]) @ J[:, :3]
+        edges_W = edges_S @ self.R_SW[points]
+        J_edges = edges_W @ J_points
+        return Contacts(points, load[points], edges_W, J_edges.reshape(-1, J.shape[-1]))
+
+
+class Contacts(NamedTuple):
+    """The points that can carry a force, c of them.
+
+    Attributes:
+        points: indices of the points, (c,).
+        load: share of its strength that the reference allows for each, (c,).
+        edges_W: edges of each point's friction pyramid in W, (c, edges, 3).
+        J_edges: Jacobian of the velocities along all edges, (c x edges, nv).
+    """
+
+    points: Indices
+    load: Array
+    edges_W: Array
+    J_edges: Array
+
+    def forces(self, edge_forces: Array) -> Array:
+        """Force on each point in W, (c, 3), from the forces along all edges, (c x edges,)."""
+        forces: Array = (edge_forces.reshape(*self.edges_W.shape[:2], 1) * self.edges_W).sum(axis=1)
+        return forces

@@ -1,0 +1,116 @@
+"""Gains, weights and limits of the whole-body program."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from humanwalk.quantity import quantity
+
+
+@dataclass(frozen=True)
+class TaskGains:
+    """Desired acceleration of a task per error, and its weight against the other tasks."""
+
+    stiffness: float = quantity(100.0, "1/s2", 0.0, 1e4)
+    """Acceleration per position error."""
+
+    damping: float = quantity(20.0, "1/s", 0.0, 500.0)
+    """Acceleration per velocity error."""
+
+    weight: float = quantity(1.0, "", 0.0, 1e5)
+    """Cost per squared acceleration error."""
+
+
+@dataclass(frozen=True)
+class PrescribedGains:
+    """Gains of joints whose accelerations are prescribed and not traded off against other tasks."""
+
+    stiffness: float = quantity(60.0, "1/s2", 0.0, 1e4)
+    """Acceleration per angle error."""
+
+    damping: float = quantity(15.5, "1/s", 0.0, 500.0)
+    """Acceleration per rate error."""
+
+
+def critical(stiffness: float, weight: float) -> TaskGains:
+    """Gains of a critically damped task."""
+    return TaskGains(stiffness, 2.0 * math.sqrt(stiffness), weight)
+
+
+@dataclass(frozen=True)
+class WholeBodyParameters:
+    """Tasks and limits of the whole-body controller."""
+
+    com_weight: float = quantity(300.0, "", 0.0, 1e5)
+    """Weight of the horizontal acceleration of the center of mass, which follows from the zero-moment point alone.
+    A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
+
+    com_height: TaskGains = critical(100.0, 50.0)
+    """Height of the center of mass."""
+
+    stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
+    """Zero velocity of a foot in stance."""
+
+    sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
+    """Speed at which a stance foot that is still in the air moves toward the ground."""
+
+    heel_strike: TaskGains = critical(600.0, 1000.0)
+    """Rotation of a foot after heel strike."""
+
+    heel_off: TaskGains = critical(400.0, 40.0)
+    """Pitch of a foot whose heel rises."""
+
+    swing_position: TaskGains = critical(300.0, 50.0)
+    """Position of the swing ankle."""
+
+    swing_rotation: TaskGains = critical(400.0, 20.0)
+    """Rotation of the swing foot."""
+
+    swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
+    """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
+
+    pelvis: TaskGains = critical(200.0, 5.0)
+    """Rotation of the pelvis."""
+
+    chest: TaskGains = critical(150.0, 5.0)
+    """Rotation of the chest."""
+
+    spine: TaskGains = critical(100.0, 0.3)
+    """Posture of the spine."""
+
+    feet: TaskGains = critical(400.0, 30.0)
+    """Posture of ankle rotation, midfoot and toes."""
+
+    legs: TaskGains = TaskGains(0.0, 0.0, 0.001)
+    """Posture of hips, knees and ankles; only makes the solution unique."""
+
+    arms: PrescribedGains = PrescribedGains()
+    """Posture of arms, shoulder girdle, neck and head."""
+
+    effort: float = quantity(1e-4, "", 0.0, 1.0)
+    """Cost per squared joint acceleration."""
+
+    force: float = quantity(1e-6, "1/N2", 1e-12, 1.0)
+    """Cost per squared contact force."""
+
+    friction: float = quantity(0.55, "", 0.1, 1.0)
+    """Friction coefficient of the planned contact forces; below that of the ground, 0.7, as a margin."""
+
+    max_force: float = quantity(1500.0, "N", 100.0, 1e4)
+    """Maximum contact force along each edge of a friction pyramid."""
+
+    contact_height: float = quantity(0.008, "m", 0.001, 0.05)
+    """Height of a contact point above the ground from which on it carries no force."""
+
+    joint_limit_stiffness: float = quantity(900.0, "1/s2", 0.0, 1e4)
+    """Bound of a joint's acceleration toward its limit, per distance from the limit."""
+
+    joint_limit_damping: float = quantity(60.0, "1/s", 0.0, 500.0)
+    """Reduction of that bound per velocity toward the limit."""
+
+    knee_margin: float = quantity(0.05, "rad", 0.0, 0.5)
+    """Flexion at which the knee's range ends here; a straight leg cannot be shortened."""
+
+    hold: float = quantity(0.02, "s", 0.0, 0.2)
+    """Time for which the last torques are held after a QP failure; then the joints are only damped."""

@@ -1,0 +1,146 @@
+"""Tasks of the whole-body program: accelerations that center of mass, trunk and feet should have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from humanwalk.body import SIDES
+from humanwalk.body.limbs import CHEST, LEGS, PELVIS
+from humanwalk.control.body_dynamics import Dynamics, FrameMotion
+from humanwalk.control.whole_body_contacts import SolesOnTerrain
+from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
+from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import rotation_vector, yaw_pitch
+from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
+
+UPRIGHT = np.eye(3)
+REST = np.zeros(3)
+
+
+class Task(NamedTuple):
+    """Desired value of J v'.
+
+    Attributes:
+        J: (rows, nv).
+        acceleration: desired J v', that is the desired acceleration minus the bias, (rows,) [rad/s2, m/s2].
+        weight: cost per squared error.
+    """
+
+    J: Array
+    acceleration: Array
+    weight: float
+
+
+class Foot(NamedTuple):
+    """A foot at one state.
+
+    Attributes:
+        hindfoot, toes: frames of its first and last body.
+        p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
+        heel_height: of that point above the terrain [m].
+        R_WS: axes of the terrain below the heel, (3, 3).
+    """
+
+    hindfoot: FrameMotion
+    toes: FrameMotion
+    p_BHeel: Array
+    heel_height: float
+    R_WS: Array
+
+    def sinking(self, p: WholeBodyParameters) -> Array:
+        """Desired velocity of a stance foot in W [m/s], (3,): 0, or toward the ground if it is still in the air."""
+        return -p.sinking_speed * self.R_WS[:, 2] if self.heel_height > p.contact_height else REST
+
+
+def tasks(
+    body: Dynamics, soles: SolesOnTerrain, reference: WalkingReference, p: WholeBodyParameters
+) -> tuple[Array, Array, Array]:
+    """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,)."""
+    found = [
+        *_center_of_mass(body, reference, p),
+        _rotation(body.frame(PELVIS), yaw_pitch(reference.pelvis_yaw, 0.0), p.pelvis),
+        _rotation(body.frame(CHEST), yaw_pitch(reference.chest_yaw, 0.0), p.chest),
+    ]
+    for side in SIDES:
+        leg, foot = LEGS[side], reference.foot(side)
+        state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side))
+        found.extend(_FOOT_TASKS[foot.task](state, foot, p))
+    J, acceleration, weight = zip(*found, strict=True)
+    return np.concatenate(J), np.concatenate(acceleration), np.repeat(weight, [len(a) for a in acceleration])
+
+
+def _center_of_mass(body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Iterator[Task]:
+    """Horizontal acceleration from the zero-moment point, vertical acceleration from the reference height."""
+    com, gains = body.com, p.com_height
+    x, y, z = com.position.tolist()
+    height, rate, lift = reference.com_height
+    level = com_acceleration(complex(x, y), reference.zmp, z - reference.ground_height, lift)
+    up = lift + gains.stiffness * (height - z) + gains.damping * (rate - com.velocity[2])
+    yield Task(com.J[:2], np.array((level.real, level.imag)) - com.bias[:2], p.com_weight)
+    yield Task(com.J[2:], up - com.bias[2:], gains.weight)
+
+
+def _rotation(
+    frame: FrameMotion, R_WG: Array, gains: TaskGains, velocity: Array = REST, acceleration: Array = REST
+) -> Task:
+    """A frame should have the orientation R_WG, with an angular velocity and acceleration in W."""
+    error = rotation_vector(frame.R_WB, R_WG)
+    desired = acceleration + gains.stiffness * error + gains.damping * (velocity - frame.V_WB[:3])
+    return Task(frame.J[:3], desired - frame.bias[:3], gains.weight)
+
+
+def _no_motion(frame: FrameMotion, velocity: Array, gains: TaskGains) -> Task:
+    """A frame should not turn and have a translational velocity in W."""
+    desired = gains.damping * (np.concatenate((REST, velocity)) - frame.V_WB)
+    return Task(frame.J, desired - frame.bias, gains.weight)
+
+
+def _flat(foot: Foot, _: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
+    yield _no_motion(foot.hindfoot, foot.sinking(p), p.stance)
+
+
+def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
+    """The heel stands, and the foot turns until it is parallel to the terrain."""
+    heel = foot.hindfoot.point(foot.p_BHeel)
+    desired = p.stance.damping * (foot.sinking(p) - heel.velocity)
+    yield Task(heel.J, desired - heel.bias, p.stance.weight)
+    yield _rotation(foot.hindfoot, foot.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike)
+
+
+def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
+    """The toes stand, and the hindfoot pitches about its own axis."""
+    yield _no_motion(foot.toes, REST, p.stance)
+    angle, rate, acceleration = reference.pitch
+    R_WG = foot.R_WS @ yaw_pitch(reference.yaw, angle)
+    axis = R_WG[:, 1]
+    whole = _rotation(foot.hindfoot, R_WG, p.heel_off, rate * axis, acceleration * axis)
+    yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
+
+
+def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
+    """The ankle follows its path, and the foot its yaw and pitch."""
+    frame, gains, path = foot.hindfoot, p.swing_position, reference.position
+    height, rate, lift = reference.height
+    position = np.array((path.position.real, path.position.imag, height))
+    velocity = np.array((path.velocity.real, path.velocity.imag, rate))
+    desired = np.array((path.acceleration.real, path.acceleration.imag, lift))
+    desired += gains.stiffness * (position - frame.p_WB) + gains.damping * (velocity - frame.V_WB[3:])
+    level = np.hypot(desired[0], desired[1])
+    if level > p.swing_acceleration_limit:
+        desired[:2] *= p.swing_acceleration_limit / level
+    yield Task(frame.J[3:], desired - frame.bias[3:], gains.weight)
+    angle, pitch_rate, pitch_acceleration = reference.pitch
+    R_WG = foot.R_WS @ yaw_pitch(reference.yaw, angle)
+    axis = R_WG[:, 1]
+    yield _rotation(frame, R_WG, p.swing_rotation, pitch_rate * axis, pitch_acceleration * axis)
+
+
+_FOOT_TASKS: dict[FootTask, Callable[[Foot, FootReference, WholeBodyParameters], Iterator[Task]]] = {
+    FootTask.FLAT: _flat,
+    FootTask.HEEL_STRIKE: _heel_strike,
+    FootTask.HEEL_OFF: _heel_off,
+    FootTask.SWING: _swing,
+}
