@@ -87,17 +87,17 @@ def evaluation() -> dict[str, Any]:
 
     def law(contacts: Contacts) -> None:
         """As often as the step needs it where one pass does."""
-        load, area = contacts.memory.load, np.ones_like(contacts.normal)
-        f_n = normal_force(parameters, contacts.normal, contacts.height)
-        bound = friction_bound(parameters, f_n, load, area, 0.0)
-        friction_force(parameters, contacts.held, contacts.friction, bound)
+        f_t, f_n = contacts.f_S[:, :2], contacts.f_S[:, 2]
+        f_n = normal_force(parameters, f_n, -f_n)
+        bound = friction_bound(parameters, 0.7, f_n, contacts.memory.load, np.ones_like(f_n), 0.0)
+        friction_force(parameters, f_t, f_t, bound)
 
     parameters = AsperityParameters()
     results = [call(*inputs) for call, inputs in steps]
     laws = [[spent(law, result) for result in results] for _ in range(REPEATS)]
     times = [[spent(call, *inputs) for call, inputs in steps] for _ in range(REPEATS)]
     return {
-        "points": len(results[0].normal),
+        "points": len(results[0].f_S),
         "states": len(steps),
         "law": percentiles(np.min(laws, axis=0)),
         "step": percentiles(np.min(times, axis=0)),

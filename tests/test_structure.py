@@ -39,12 +39,11 @@ PENDING: dict[str, dict[str, str]] = {
     },
     "size": {
         "founder": "scenario.py",
-        "h1": "body/anatomy.py contact/contact_step.py",
+        "h1": "body/anatomy.py",
         "h2": "walking/step_planner.py",
         "h6": "cli/main.py",
     },
     "array": {
-        "h1": "contact/asperity.py contact/contact_step.py",
         "h3": "gait/thesis_path.py",
         "h5": "measures/effort.py measures/events.py measures/gait_measures.py measures/human_likeness.py "
         "measures/summary.py",

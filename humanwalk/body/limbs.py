@@ -43,8 +43,10 @@ class Leg:
     @staticmethod
     def of(side: Side) -> Leg:
         """The leg of a side."""
-        joints = ("Femur", "FemurSide", "FemurTwist", "Tibia", "Ankle", "AnkleRoll", "AnkleTwist")
-        joints += ("FootMiddle", "FootToes")
+        joints = (
+            *("Femur", "FemurSide", "FemurTwist", "Tibia", "Ankle", "AnkleRoll", "AnkleTwist"),
+            *("FootMiddle", "FootToes"),
+        )
         bodies = ("Femur_Thigh", "Tibia", "Ankle", "FootMiddle", "FootToes", "Sole")
         return Leg(side, *(f"{side}Leg{joint}Motion" for joint in joints), *(f"{side}Leg_{body}" for body in bodies))
 

@@ -11,7 +11,8 @@ from humanwalk.body import SIDES, sole_patches
 from humanwalk.body.contact import SolePatch
 from humanwalk.choices.world import HumanPlant
 from humanwalk.contact.asperity import AsperityParameters
-from humanwalk.contact.contact_step import body_jacobians, largest_contact_step, patch_impedance
+from humanwalk.contact.contact_step import body_jacobians
+from humanwalk.contact.stable_step import largest_contact_step, patch_impedance
 from humanwalk.control.pd_laws import PD_LAWS
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import round_down
@@ -19,7 +20,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
 from humanwalk.systems.asperity_contact import AsperityContact
 from humanwalk.systems.foot_force_observer import FootForceObserver
-from humanwalk.terrain.ground import PlaneGround
+from humanwalk.terrain import Plane
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def add_foot_contact(builder: DiagramBuilder, scenario: Scenario, human: HumanPl
     plant = human.plant
     if scenario.contact != "asperity":
         feet = builder.AddNamedSystem(
-            "foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector())
+            "foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector(), Plane())
         )
         builder.Connect(plant.get_contact_results_output_port(), feet.GetInputPort("contact_results"))
         return FootContact(feet.GetOutputPort("foot_forces"), feet.GetOutputPort("friction_use"), ())
@@ -55,18 +56,19 @@ def add_foot_contact(builder: DiagramBuilder, scenario: Scenario, human: HumanPl
             "contact: asperity needs the discrete plant, whose step its forces are implicit in; allowed: with "
             "simulation.integrator: discrete; set it and a time_step, or contact: point"
         )
-    feet = [sole_patches(scenario.subject.skeleton, side) for side in SIDES]
+    feet = {side: sole_patches(scenario.subject.skeleton, side) for side in SIDES}
     joint_law = _joint_law(scenario, human)
-    _require_stable_contact(plant, [patch for foot in feet for patch in foot], scenario.asperity, joint_law, human)
+    _require_stable_contact(
+        plant, [patch for foot in feet.values() for patch in foot], scenario.asperity, joint_law, human
+    )
     contact = builder.AddNamedSystem(
         "foot_contact",
         AsperityContact(
             plant,
             feet,
-            PlaneGround(),
+            Plane(),
             scenario.asperity,
             joint_law(plant.time_step())[0],
-            scenario.simulation.control_period,
         ),
     )
     builder.Connect(plant.get_state_output_port(), contact.GetInputPort("state"))
@@ -111,7 +113,7 @@ def _require_stable_contact(
     """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""
     context = plant.CreateDefaultContext()
     J = body_jacobians(plant, context, [plant.GetBodyByName(patch.body) for patch in patches])
-    _, R_SW = PlaneGround()(np.zeros(3))
+    R_SW = Plane().axes(np.zeros(2))
     # Standing, every body of the feet is turned as the world is.
     r, area = np.array([patch.p_BoQ_B for patch in patches]), np.array([patch.area for patch in patches])
     stable = largest_contact_step(

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from pydrake.geometry import (
@@ -22,13 +23,14 @@ from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import add_human, kinematics_plant
+from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.contact.leg_contact import add_leg_capsules, let_legs_touch
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.control.pd_control import joint_gains
 from humanwalk.control.pd_laws import install_gains
 from humanwalk.numerics import Array
 from humanwalk.scenario import BalancedWalkParameters, Contact, Scenario
-from humanwalk.terrain.floor import add_level_ground
+from humanwalk.terrain import Plane
 
 CONTACT_MODELS = {
     "point": ContactModel.kPoint,
@@ -70,7 +72,7 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario, visuals: bool =
     """
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, scenario.simulation.time_step)
     instance = add_human(plant, scenario.subject)
-    add_level_ground(plant, scenario.contact)
+    Plane().add_to(plant, partial(ground_properties, hydroelastic=scenario.contact == "hydroelastic"))
     plant.set_contact_model(CONTACT_MODELS[scenario.contact])
     if plant.time_step() > 0:
         plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])

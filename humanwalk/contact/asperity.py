@@ -1,12 +1,13 @@
 """The thesis' contact law (2.4, 2.5): a normal penalty per area, and friction of asperities.
 
 Friction is a spring to an anchor on the ground, which breaks away and is dragged along, in parallel with a Coulomb law
-of two segments over velocity. Within its bounds the law is linear: along the surface's axes x and y and its normal, a
-point with the area A that is e = [stretch of its spring, height above the surface] away from rest is pushed by
+of two segments over velocity. Within its bounds the law is linear. In the surface frame S (axes x and y along the
+surface, z its normal) the force on a point with the area A, the stretch of its spring and its height above the surface
+in e, is
 
     f = A p n - K e - C e'     (Eq 2-32 with the distance that it lost, E8).
 
-Every function acts on any number of contact points at once. A vector along the surface is a complex number.
+Every function takes any number of contact points at once.
 """
 
 from __future__ import annotations
@@ -15,17 +16,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, quantity
 
-Complex = npt.NDArray[np.complex128]
-
-# Arrays: numpy takes them quicker than Python's numbers.
-ZERO, ONE = np.array(0.0), np.array(1.0)
-TINY = np.array(1e-300)
-"""Makes 0 / 0 a 0."""
+TINY = 1e-300
+"""Turns 0 / 0 into 0."""
 
 
 @dataclass(frozen=True)
@@ -36,135 +32,154 @@ class Knot:
     """Time [s] or pressure [Pa]."""
 
     factor: float = quantity(1.0, "", 0.0, 100.0)
+    """Factor on the coefficient of friction."""
 
 
 @dataclass(frozen=True)
 class AsperityParameters:
-    """Contact of `contact: asperity`: the thesis' numbers (2.5), and those of erratum E8 where they cannot stand."""
+    """The thesis' contact law with its values (2.5), except where erratum E8 shows that they cannot hold a body.
 
-    friction: float = quantity(0.7, "", 0.0, 10.0)
-    """Coefficient of friction mu (thesis)."""
+    The coefficient of friction is the terrain's.
+    """
 
     time_multiplier: tuple[Knot, ...] = ()
-    """Factor on mu over time; none is the thesis' 1."""
+    """Factor on the coefficient of friction over time; no knots stand for the thesis' constant 1."""
 
     pressure_multiplier: tuple[Knot, ...] = ()
-    """Factor on mu over the normal pressure; none is the thesis' 1."""
+    """Factor on the coefficient of friction over the normal pressure; no knots stand for the thesis' constant 1."""
 
     spring_stiffness: float = quantity(5e7, "N/m3", 1e3, 1e9)
-    """Of the asperity spring, per area (thesis)."""
+    """Stiffness of the asperity spring per area (thesis)."""
 
     velocity_stiffness: float = quantity(1e6, "N s/m3", 0.0, 1e9)
-    """Slope of the velocity law's first segment, per area (thesis)."""
+    """Slope of the velocity law's first segment per area (thesis)."""
 
     breaking_factor: float = quantity(0.975, "", 0.0, 1.0)
-    """Share of mu f_n at which an asperity breaks away (thesis' max asperity breaking factor)."""
+    """Fraction of mu f_n at which an asperity breaks away (thesis' max asperity breaking factor)."""
 
     normal_stiffness: float = quantity(5e7, "N/m3", 1e3, 3e8)
-    """Per area. The thesis' 0 carries nobody; E8 derives 1.5e7 to 5e7: quiet standing sinks in 1.0 to 0.3 mm."""
+    """Stiffness along the normal per area. The thesis' 0 cannot carry weight; E8 derives 1.5e7 to 5e7, with which quiet
+    standing sinks by 1.0 to 0.3 mm."""
 
     normal_damping: float = quantity(4e5, "N s/m3", 0.0, 1e8)
-    """Per area. With the thesis' 8000 a standing body has a damping ratio of 0.014; this gives 0.7 (E8)."""
+    """Damping along the normal per area. The thesis' 8000 gives a standing body a damping ratio of 0.014, this one 0.7
+    (E8)."""
 
     separation_damping: float = quantity(1.0, "", 0.0, 10.0)
-    """Factor on the damping while the surfaces part (thesis); the force is never below zero, so it does not pull."""
+    """Factor on the normal damping while the surfaces separate (thesis); the force never becomes a pull."""
 
     normal_pressure: float = quantity(0.0, "Pa", 0.0, 1e6)
-    """Added wherever there is contact (thesis' normal contact force per area)."""
+    """Pressure that is added wherever there is contact (thesis' normal contact force per area)."""
 
     stiction: float = quantity(0.0, "N", 0.0, 1e3)
-    """Greatest pull of one point while it is below the surface (thesis' normal stiction force)."""
+    """Largest pull on one point while it is below the surface (thesis' normal stiction force)."""
 
     averaging: float = quantity(0.75, "", 0.0, 0.99)
-    """Weight of the last step in the running mean of the normal force that bounds friction. The thesis gives the
-    number (normal averaging factor) and not its use; this use is ours."""
+    """Weight of the last step in the running mean of the normal force that bounds friction. The thesis gives the value
+    (normal averaging factor) but not its use; this use is our choice."""
+
+    mobility_period: float = quantity(0.01, "s", 0.0005, 0.05)
+    """Time between two updates of the mobility of the foot bodies, on which the implicit step is based (our choice)."""
 
     def __post_init__(self) -> None:
         for name in ("time_multiplier", "pressure_multiplier"):
             for place, (earlier, later) in enumerate(pairwise(getattr(self, name))):
                 if later.at <= earlier.at:
                     raise ParameterError(
-                        f"asperity.{name}.{place + 1}.at: {later.at:g} comes after {earlier.at:g}; allowed: growing "
+                        f"asperity.{name}.{place + 1}.at: {later.at:g} comes after {earlier.at:g}; allowed: increasing "
                         "numbers; sort the knots"
                     )
 
 
 def point_stiffness(parameters: AsperityParameters, area: Array) -> Array:
-    """K of n points with an area [m2] [N/m], shape (3 n,): x and y of each point first, then the normals."""
-    return _of_points(parameters.spring_stiffness * area, parameters.normal_stiffness * area)
-
-
-def point_damping(parameters: AsperityParameters, area: Array, rising: Array | bool = False) -> Array:
-    """C of points, likewise [N s/m]; along the normal it counts by its separation factor where they rise."""
-    factor = np.where(rising, parameters.separation_damping, 1.0)
-    return _of_points(parameters.velocity_stiffness * area, factor * parameters.normal_damping * area)
-
-
-def _of_points(along: Array, normal: Array) -> Array:
-    return np.concatenate((np.repeat(along, 2), normal))
-
-
-def friction_bound(parameters: AsperityParameters, normal: Array, load: Array, area: Array, time: float) -> Array:
-    """mu, with its multipliers, times the normal force: the most that friction may be [N].
+    """Return the stiffness of n points along the surface's axes x, y and its normal [N/m], shape (n, 3).
 
     Args:
-        parameters: of the law.
-        normal: force of the points along the normal [N], any shape.
-        load: its running mean; one that falls faster must not leave more friction than mu times what is left of it.
-        area: of the points [m2].
-        time: [s].
+        parameters: Of the law.
+        area: Area of each point [m2], shape (n,).
     """
-    firm = np.minimum(load, normal)
-    if parameters.stiction:
-        firm = np.maximum(firm, ZERO)
-    mu = parameters.friction
-    if parameters.time_multiplier:
-        mu *= float(_multiplier(parameters.time_multiplier, np.asarray(time)))
-    bound: Array = mu * firm
-    if parameters.pressure_multiplier:
-        bound *= _multiplier(parameters.pressure_multiplier, normal / area)
-    return bound
+    tangential = parameters.spring_stiffness
+    return np.outer(area, (tangential, tangential, parameters.normal_stiffness))
 
 
-def _multiplier(knots: tuple[Knot, ...], at: Array) -> Array:
+def point_damping(parameters: AsperityParameters, area: Array, rising: bool = False) -> Array:
+    """Return the damping of n points along the surface's axes x, y and its normal [N s/m], shape (n, 3).
+
+    Args:
+        parameters: Of the law.
+        area: Area of each point [m2], shape (n,).
+        rising: Whether the points move away from the surface.
+    """
+    tangential = parameters.velocity_stiffness
+    normal = parameters.normal_damping * (parameters.separation_damping if rising else 1.0)
+    return np.outer(area, (tangential, tangential, normal))
+
+
+def friction_bound(
+    parameters: AsperityParameters, mu: Array | float, normal: Array, load: Array, area: Array, time: float
+) -> Array:
+    """Return the largest friction force of each point [N]: mu, with its multipliers, times the normal force.
+
+    Args:
+        parameters: Of the law.
+        mu: Coefficient of friction of the terrain at the points.
+        normal: Normal force of the points [N], any shape.
+        load: Running mean of the normal force [N]. The smaller of the two counts, so that a normal force that falls
+            faster than its mean leaves no more friction than mu times itself.
+        area: Area of the points [m2].
+        time: Time [s].
+    """
+    pressing = np.maximum(np.minimum(load, normal), 0.0)
+    return (
+        mu
+        * _multiplier(parameters.time_multiplier, time)
+        * _multiplier(parameters.pressure_multiplier, normal / area)
+        * pressing
+    )
+
+
+def _multiplier(knots: tuple[Knot, ...], at: Array | float) -> Array | float:
+    if not knots:
+        return 1.0
     return np.interp(at, [knot.at for knot in knots], [knot.factor for knot in knots])
 
 
 def normal_force(parameters: AsperityParameters, linear: Array, height: Array) -> Array:
-    """The linear law's force where a point is below the surface, and never a pull beyond the stiction.
+    """Return the normal force of points [N]: the linear law below the surface, limited to the stiction as a pull.
 
     Args:
-        parameters: of the law.
+        parameters: Of the law.
         linear: A p - K h - C h' along the normal [N].
         height: h of the points above the surface [m].
     """
-    force: Array = np.maximum(linear, -parameters.stiction) * (height < ZERO)
-    return force
+    return np.where(height < 0.0, np.maximum(linear, -parameters.stiction), 0.0)
 
 
-def friction_force(
-    parameters: AsperityParameters, spring: Complex, linear: Complex, bound: Array
-) -> tuple[Complex, Array]:
-    """Asperity spring and velocity law, together never more than Coulomb's bound.
+def friction_force(parameters: AsperityParameters, spring: Array, linear: Array, bound: Array) -> tuple[Array, Array]:
+    """Return asperity spring and velocity law, limited together to Coulomb's bound.
 
     The spring breaks away at its breaking factor times the bound: the anchor is then dragged behind the point, so that
-    the spring stays at what it can hold. The velocity law grows by its slope and is cut off where both reach the bound.
+    the spring stays at this limit. The velocity law grows by its slope and is cut off where both reach the bound.
 
     Args:
-        parameters: of the law.
-        spring: K e of the points along the surface, from anchor to point [N].
-        linear: - K e - C e' along the surface [N].
-        bound: mu f_n >= 0 [N].
+        parameters: Of the law.
+        spring: K e of the points along the surface, from anchor to point [N], shape (n, 2).
+        linear: - K e - C e' along the surface [N], shape (n, 2).
+        bound: mu f_n >= 0 [N], shape (n,).
 
     Returns:
-        Force on each point [N], and the share of its stretch that its spring is left with.
+        Force on each point [N], shape (n, 2), and the fraction of its stretch that each spring keeps, shape (n,).
     """
-    kept = share(parameters.breaking_factor * bound, np.abs(spring))
-    force = linear + (ONE - kept) * spring
-    return force * share(bound, np.abs(force)), kept
+    kept = limit_ratio(parameters.breaking_factor * bound, norm(spring))
+    force = linear + (1.0 - kept)[:, None] * spring
+    return force * limit_ratio(bound, norm(force))[:, None], kept
 
 
-def share(allowed: Array, wanted: Array) -> Array:
-    """How much of what is wanted is allowed: 1 where all of it is."""
-    portion: Array = np.minimum(ONE, allowed / (wanted + TINY))
-    return portion
+def norm(vectors: Array) -> Array:
+    """Return the lengths of n vectors along the surface, shape (n,) for (n, 2)."""
+    return np.hypot(vectors[:, 0], vectors[:, 1])
+
+
+def limit_ratio(limit: Array, magnitude: Array) -> Array:
+    """Return the factor in [0, 1] that reduces magnitudes to their limit; 1 where the limit is not exceeded."""
+    return np.minimum(1.0, limit / (magnitude + TINY))

@@ -1,69 +1,72 @@
-"""From the forces at single contacts to what a force plate under each foot would show."""
+"""Ground reaction of a foot from the forces at its contacts, as a force plate under the foot would measure it."""
+
+from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from humanwalk.numerics import Array
+from humanwalk.terrain import Terrain
 
 UNLOADED_N = 1.0
-"""Vertical force below which a foot counts as unloaded: its centre of pressure would be noise."""
+"""Normal force up to which a foot counts as unloaded: its center of pressure would be noise."""
 
 
 class FootForce(NamedTuple):
-    """Ground reaction on one foot, in the world frame W.
+    """Ground reaction on one foot.
 
     Attributes:
-        f_W: force [N], three numbers.
-        p_WCop: centre of pressure on the ground plane [m], three numbers; zero while unloaded.
-        free_moment: torque about the vertical through the centre of pressure [N m]; zero while unloaded.
-        loaded: whether the vertical force exceeds UNLOADED_N.
+        f_W: Force in W [N], shape (3,).
+        p_WCop: Center of pressure on the plane tangent to the terrain [m], shape (3,); zero while unloaded.
+        free_moment: Moment about the surface normal through the center of pressure [N m]; zero while unloaded.
+        loaded: Whether the normal force exceeds `UNLOADED_N`.
+        friction_use: Tangential force over friction coefficient times normal force; zero while unloaded.
     """
 
-    f_W: Sequence[float] | Array
-    p_WCop: Sequence[float]
+    f_W: Array
+    p_WCop: Array
     free_moment: float
     loaded: bool
+    friction_use: float
 
     @property
-    def vector(self) -> tuple[float, ...]:
-        """All of it in the order above, loaded as 1 or 0; eight numbers."""
-        return (*self.f_W, *self.p_WCop, self.free_moment, float(self.loaded))
+    def vector(self) -> Array:
+        """Force, center of pressure, free moment, loaded (1 or 0); shape (8,)."""
+        return np.array((*self.f_W, *self.p_WCop, self.free_moment, self.loaded))
 
 
-def foot_force(f_W: Sequence[float] | Array, tau_Wo: Sequence[float] | Array, ground_height: float = 0.0) -> FootForce:
-    """Centre of pressure and free moment of a foot's whole contact wrench.
+def foot_force(p_WQ: Array, f_W: Array, terrain: Terrain, m_W: Array | float = 0.0) -> FootForce:
+    """Return the ground reaction on a foot that is touched at k points.
 
-    Taken from the wrench and not from the centroid of a contact patch, which is another point (drake#22440).
-
-    Args:
-        f_W: sum of the contact forces on the foot [N], three numbers.
-        tau_Wo: their moment about the world origin [N m], three numbers.
-        ground_height: height of the level ground [m].
-    """
-    f_x, f_y, f_z = f_W
-    tau_x, tau_y, tau_z = tau_Wo
-    if f_z <= UNLOADED_N:
-        return FootForce(f_W, (0.0, 0.0, 0.0), 0.0, False)
-    # On the plane z = ground_height the moment about the CoP has no horizontal part (Winter 2009, section 5.2.9).
-    x = (-tau_y + ground_height * f_x) / f_z
-    y = (tau_x + ground_height * f_y) / f_z
-    return FootForce(f_W, (x, y, ground_height), tau_z - (x * f_y - y * f_x), True)
-
-
-def friction_use(f_t: Sequence[float] | Array, bound: float) -> float:
-    """How much of the friction that the ground could give is used: 1 where the foot slides; 0 while unloaded.
+    The center of pressure comes from the whole wrench, not from the centroid of a contact patch, which is another
+    point (drake#22440).
 
     Args:
-        f_t: force along the ground [N], two or three numbers.
-        bound: the most that it can be, mu times the normal force [N].
+        p_WQ: Contact points [m], shape (k, 3).
+        f_W: Force on the foot at each point [N], shape (k, 3).
+        terrain: The ground; its tangent plane is taken below the mean of the points, weighted by force.
+        m_W: Moment on the foot at each point [N m], shape (k, 3).
     """
-    return math.hypot(*f_t) / bound if bound > UNLOADED_N else 0.0
-
-
-def moments(points: Array, forces: Array) -> Array:
-    """Sum of the cross products of rows, shape (3,); numpy's own cross takes many times as long."""
-    S = points.T @ forces
-    return np.array([S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]])
+    f_total = f_W.sum(axis=0)
+    weight = np.linalg.norm(f_W, axis=1)
+    unloaded = FootForce(f_total, np.zeros(3), 0.0, False, 0.0)
+    if weight.sum() <= UNLOADED_N:
+        return unloaded
+    p_WS = weight @ p_WQ / weight.sum()
+    p_WS[2] = terrain.height(p_WS[:2])
+    R_SW = terrain.axes(p_WS[:2])
+    f_x, f_y, f_n = R_SW @ f_total
+    if f_n <= UNLOADED_N:
+        return unloaded
+    m_x, m_y, m_n = R_SW @ (np.cross(p_WQ - p_WS, f_W) + m_W).sum(axis=0)
+    # The moment about the center of pressure has no tangential component (Winter 2009, section 5.2.9).
+    x, y = -m_y / f_n, m_x / f_n
+    return FootForce(
+        f_W=f_total,
+        p_WCop=p_WS + np.array((x, y, 0.0)) @ R_SW,
+        free_moment=m_n - (x * f_y - y * f_x),
+        loaded=True,
+        friction_use=math.hypot(f_x, f_y) / (float(terrain.friction(p_WS[:2])) * f_n),
+    )

@@ -8,12 +8,13 @@ from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 from humanwalk.body.plant import add_human
 from humanwalk.choices.reference import add_walking_reference, make_recorded_motion
 from humanwalk.choices.start import require_reachable
+from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
 from humanwalk.systems.posture_interpolator import PostureInterpolator
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
-from humanwalk.terrain.floor import add_level_ground
+from humanwalk.terrain import Plane
 
 
 def make_playback(scenario: Scenario) -> Diagram:
@@ -40,7 +41,7 @@ def make_playback(scenario: Scenario) -> Diagram:
     plant = MultibodyPlant(time_step=0.0)
     plant.RegisterAsSourceForSceneGraph(scene_graph)
     add_human(plant, scenario.subject)
-    add_level_ground(plant, scenario.contact)
+    Plane().add_to(plant, ground_properties)
     plant.Finalize()
     state = builder.AddNamedSystem("playback_state", PlaybackState(plant))
     body = builder.AddNamedSystem("body_observer", BodyObserver(plant))

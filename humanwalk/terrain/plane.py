@@ -27,6 +27,8 @@ FLOOR_COLOR = np.array([0.86, 0.87, 0.86, 1.0])
 LINE_COLOR = np.array([0.60, 0.62, 0.63, 1.0])
 MARK_COLOR = np.array([0.36, 0.40, 0.43, 1.0])
 
+_Box = tuple[str, tuple[float, float, float], tuple[float, float, float], Array]
+
 LINE_WIDTH = 0.012
 MARK_WIDTH = 0.03
 """Width of the line at every meter, and at every fifth across the walk [m]."""
@@ -60,7 +62,9 @@ class Plane:
 
     def axes(self, xy: Array) -> Array:
         """See `Terrain.axes`."""
-        return np.broadcast_to(self._R_SW, (*xy.shape[:-1], 3, 3))
+        axes = np.empty((*xy.shape[:-1], 3, 3))
+        axes[:] = self._R_SW
+        return axes
 
     def friction(self, xy: Array) -> Array:
         """See `Terrain.friction`."""
@@ -78,13 +82,13 @@ class Plane:
             )
 
 
-def _floor() -> list[tuple[str, tuple[float, float, float], tuple[float, float, float], Array]]:
+def _floor() -> list[_Box]:
     """Boxes of the drawn floor in the surface frame: name, center [m], edges [m], color.
 
     Floor and lines have tops of their own: of two surfaces at one height neither is drawn reliably.
     """
     middle = 0.5 * LENGTH - BEHIND
-    boxes = [("floor", (middle, 0.0, -0.002 - 0.5 * THICKNESS), (LENGTH, WIDTH, THICKNESS), FLOOR_COLOR)]
+    boxes: list[_Box] = [("floor", (middle, 0.0, -0.002 - 0.5 * THICKNESS), (LENGTH, WIDTH, THICKNESS), FLOOR_COLOR)]
     for y in range(-WIDTH // 2 + 1, WIDTH // 2):
         size = (LENGTH, LINE_WIDTH, THICKNESS)
         boxes.append((f"along_{y}", (middle, float(y), -0.001 - 0.5 * THICKNESS), size, LINE_COLOR))

@@ -11,9 +11,14 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
 from humanwalk.choices.world import add_human_plant
+from humanwalk.measures.signals import signal_columns
+from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario, SimulationParameters
 from humanwalk.systems.foot_force_observer import FootForceObserver
+from humanwalk.terrain import Plane
 
 N = 42
 SCENARIO = Scenario(simulation=SimulationParameters(time_step=0.002))
@@ -24,7 +29,7 @@ def standing(contact, lift=0.0, duration=1.0):
     builder = DiagramBuilder()
     human = add_human_plant(builder, dataclasses.replace(SCENARIO, contact=contact))
     plant = human.plant
-    observer = builder.AddSystem(FootForceObserver(plant, human.scene_graph.model_inspector()))
+    observer = builder.AddSystem(FootForceObserver(plant, human.scene_graph.model_inspector(), Plane()))
     builder.Connect(plant.get_contact_results_output_port(), observer.GetInputPort("contact_results"))
     desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
     builder.Connect(desired.get_output_port(), plant.get_desired_state_input_port(human.instance))
@@ -36,8 +41,8 @@ def standing(contact, lift=0.0, duration=1.0):
     plant.SetPositions(context, q)
     simulator.AdvanceTo(duration)
     forces = observer.GetOutputPort("foot_forces").Eval(observer.GetMyContextFromRoot(simulator.get_context()))
-    soles = [plant.GetFrameByName(f"{side}Leg_Sole").CalcPoseInWorld(context) for side in ("Right", "Left")]
-    return forces.reshape(2, 8), plant.CalcTotalMass(context) * 9.81, soles, plant.GetVelocities(context)
+    soles = [plant.GetFrameByName(leg.sole).CalcPoseInWorld(context) for leg in LEGS.values()]
+    return forces.reshape(2, 8), plant.CalcTotalMass(context) * GRAVITY, soles, plant.GetVelocities(context)
 
 
 @pytest.fixture(scope="module", params=["point", "hydroelastic"])
@@ -48,7 +53,7 @@ def stood(request):
 def test_ports(plant):
     builder = DiagramBuilder()
     human = add_human_plant(builder, SCENARIO)
-    observer = FootForceObserver(human.plant, human.scene_graph.model_inspector())
+    observer = FootForceObserver(human.plant, human.scene_graph.model_inspector(), Plane())
     assert observer.num_input_ports() == 1
     assert observer.GetInputPort("contact_results").get_name() == "contact_results"
     port = observer.GetOutputPort("foot_forces")
@@ -77,7 +82,7 @@ def test_a_symmetric_body_loads_both_feet_alike(stood):
     assert right[4] == pytest.approx(-left[4], abs=0.002)
 
 
-def test_the_centre_of_pressure_lies_within_each_sole(stood):
+def test_the_center_of_pressure_lies_within_each_sole(stood):
     feet, _, soles, _ = stood
     back, front = SOLE_PARTS[0].x[0], SOLE_PARTS[-1].x[1]
     half_width = max(part.width for part in SOLE_PARTS) / 2
@@ -85,10 +90,10 @@ def test_the_centre_of_pressure_lies_within_each_sole(stood):
         x, y, _ = X_WS.inverse().multiply(foot[3:6])
         assert back < x < front
         assert abs(y) < half_width
-        assert foot[5] == 0.0
+        assert foot[5] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_the_centres_of_pressure_balance_the_body(stood, skeleton):
+def test_the_centers_of_pressure_balance_the_body(stood, skeleton):
     """At rest the weight's line of action goes through their mean."""
     feet, _, _, _ = stood
     middle = np.average(feet[:, 3:5], axis=0, weights=feet[:, 2])
@@ -99,3 +104,12 @@ def test_the_centres_of_pressure_balance_the_body(stood, skeleton):
 def test_in_the_air_everything_is_zero(contact):
     feet, *_ = standing(contact, lift=0.3, duration=0.01)
     np.testing.assert_array_equal(feet, 0.0)
+
+
+def test_its_signals_are_recorded_under_the_names_of_the_feet(plant):
+    builder = DiagramBuilder()
+    human = add_human_plant(builder, SCENARIO)
+    forces, friction_use = FootForceObserver(human.plant, human.scene_graph.model_inspector(), Plane()).signals
+    columns = signal_columns(JointMap.of(plant))
+    assert list(forces.columns) == columns["foot_forces"]
+    assert list(friction_use.columns) == columns["friction_use"]
