@@ -1,7 +1,7 @@
-"""Numbers with a unit and an allowed range, and the check that names what is wrong with one.
+"""Parameters with a unit and an allowed range, and errors of one line.
 
-A parameter of a scenario is a dataclass field made by `quantity`; `check` walks any dataclass and raises
-`ParameterError` on the first value that cannot be meant, with the field, the value, the range and a mend.
+A parameter of a scenario is a dataclass field made by `quantity`. `check` visits a tree of dataclasses and raises
+`ParameterError` for the first value out of range, with field, value, range and fix.
 """
 
 import dataclasses
@@ -13,15 +13,14 @@ from typing import Any
 GRAVITY = 9.81
 """Acceleration of gravity, Drake's default [m/s2]."""
 
-UNIT_SLIPS = {
-    "m": {100.0: "centimetres", 1000.0: "millimetres"},
+UNIT_MISTAKES = {
+    "m": {100.0: "centimeters", 1000.0: "millimeters"},
     "rad": {180.0 / math.pi: "degrees"},
     "s": {1000.0: "milliseconds"},
     "m/s": {3.6: "km/h", 100.0: "cm/s"},
     "kg": {2.204623: "pounds", 1000.0: "grams"},
 }
-"""Factors by which people slip: a value given in the named unit is that many times too large."""
-
+"""By required unit: factor by which a value is too large if given in the named unit."""
 
 MESSAGE_LENGTH = 4000
 """Longest error message [characters]; the longest list of allowed fields fits."""
@@ -37,11 +36,11 @@ class ParameterError(ValueError):
 def printable(text: object, limit: int = 120) -> str:
     """`str(text)` on one line, safe for a terminal, at most `limit` characters long.
 
-    Names of files, columns and scenarios come from others: control characters, line ends, bidirectional marks and
-    bytes that are no text are escaped, and the middle of a long text is left out.
+    Names of files, columns and scenarios are untrusted. Control characters, line ends, bidirectional marks and bytes
+    that do not decode are escaped; the middle of a long text is omitted.
     """
     raw = str(text)
-    # Only the ends can be shown: a text of any length takes no longer.
+    # Bounds the time: no more than the two ends is shown.
     raw = raw if len(raw) <= 2 * limit else raw[:limit] + raw[-limit:]
     shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in raw)
     if len(shown) <= limit and len(raw) == len(str(text)):
@@ -56,51 +55,54 @@ def quantity(default: float, unit: str, low: float, high: float) -> Any:
 
 
 def choice(choices: Mapping[str, type[Any]], default: Any) -> Any:
-    """Dataclass field for one of several dataclasses, which a file names by its tag: `contact: point`.
+    """Dataclass field that holds one of several dataclasses; a file names it by its tag: `contact: point`.
 
     Args:
-        choices: the dataclasses by tag.
-        default: an instance of one of them.
+        choices: Dataclasses by tag.
+        default: Instance of one of them.
     """
     return dataclasses.field(default=default, metadata={"choices": choices})
 
 
 def tag_of(choices: Mapping[str, type[Any]], value: Any) -> str:
-    """The tag of a choice: the key of its type."""
+    """Tag of a choice: the key of its type."""
     return next(tag for tag, kind in choices.items() if type(value) is kind)
 
 
 def did_you_mean(text: str, choices: Sequence[str]) -> str:
-    """End of an error message that names the nearest of some choices; empty where none is near."""
+    """End of an error message: the most similar choice, or nothing if none is similar."""
     near = difflib.get_close_matches(text, choices, n=1, cutoff=0.5)
     return f"; did you mean {near[0]}?" if near else ""
 
 
 def check(parameters: Any, path: str = "") -> None:
-    """Raise ParameterError for the first number in a dataclass tree that is outside its allowed range.
+    """Check every quantity of a tree of dataclasses.
 
     Args:
-        parameters: dataclass instance; nested dataclasses and dictionaries of them are entered.
-        path: dotted name of `parameters` itself, for the message.
+        parameters: Dataclass instance; nested dataclasses, and tuples and mappings of them, are visited.
+        path: Dotted name of `parameters`, for the message.
+
+    Raises:
+        ParameterError: A number is out of its range.
     """
     for name, value, metadata in _numbers(parameters, path):
         require_in_range(name, value, metadata["unit"], metadata["low"], metadata["high"])
 
 
 def require_in_range(name: str, value: float, unit: str, low: float, high: float) -> None:
-    """Raise ParameterError unless low <= value <= high; guesses a slip of the unit for the mend."""
+    """Raise ParameterError unless low <= value <= high; the message suggests a fix, such as another unit."""
     if math.isfinite(value) and low <= value <= high:
         return
     allowed = f"allowed: {low:g} to {high:g} {unit}".rstrip()
-    raise ParameterError(f"{name}: {value:g} is out of range; {allowed}; {_mend(value, unit, low, high)}")
+    raise ParameterError(f"{name}: {value:g} is out of range; {allowed}; {_fix(value, unit, low, high)}")
 
 
-def _mend(value: float, unit: str, low: float, high: float) -> str:
+def _fix(value: float, unit: str, low: float, high: float) -> str:
     if not math.isfinite(value):
         return "give a finite number"
-    for factor, meant in UNIT_SLIPS.get(unit, {}).items():
+    for factor, other_unit in UNIT_MISTAKES.get(unit, {}).items():
         if low <= value / factor <= high and value > high:
-            return f"if it is in {meant}, write {value / factor:.4g} ({unit})"
+            return f"if it is in {other_unit}, write {value / factor:.4g} ({unit})"
     nearest = low if value < low else high
     return f"the nearest allowed value is {nearest:g}"
 
@@ -111,15 +113,13 @@ def _numbers(parameters: Any, path: str) -> Iterator[tuple[str, float, Mapping[s
         name = f"{path}.{field.name}" if path else field.name
         if "unit" in field.metadata:
             yield name, value, field.metadata
-        elif "choices" in field.metadata:
-            yield from _numbers(value, f"{name}.{tag_of(field.metadata['choices'], value)}")
         elif dataclasses.is_dataclass(value):
-            yield from _numbers(value, name)
-        elif isinstance(value, tuple):
-            for place, item in enumerate(value):
-                if dataclasses.is_dataclass(item):
-                    yield from _numbers(item, f"{name}.{place}")
-        elif isinstance(value, Mapping):
-            for key, item in value.items():
+            choices = field.metadata.get("choices")
+            yield from _numbers(value, f"{name}.{tag_of(choices, value)}" if choices else name)
+        else:
+            items = (
+                value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, tuple) else ()
+            )
+            for key, item in items:
                 if dataclasses.is_dataclass(item):
                     yield from _numbers(item, f"{name}.{key}")

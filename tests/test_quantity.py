@@ -1,4 +1,4 @@
-"""Numbers with a range: one line says which field, what it was, what is allowed and how to mend it."""
+"""Errors of one line: field, value, allowed range, fix."""
 
 import math
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.quantity import UNIT_SLIPS, ParameterError, check, printable, quantity, require_in_range
+from humanwalk.quantity import UNIT_MISTAKES, ParameterError, check, printable, quantity, require_in_range
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ def test_every_value_beyond_the_range_is_refused(value):
     assert "length" in message_of(Leaf(length=value))
 
 
-def test_the_message_has_field_value_range_and_mend_in_one_line():
+def test_the_message_has_field_value_range_and_fix_on_one_line():
     message = message_of(Leaf(length=2.0))
     assert message == "length: 2 is out of range; allowed: 0.1 to 1 m; the nearest allowed value is 1"
 
 
-def test_a_value_below_the_range_is_led_to_its_lower_end():
+def test_the_fix_for_a_value_below_the_range_is_its_lower_end():
     assert message_of(Leaf(length=0.01)).endswith("the nearest allowed value is 0.1")
 
 
@@ -59,41 +59,41 @@ def test_a_pure_number_has_no_unit_in_its_message():
 
 
 @pytest.mark.parametrize(
-    ("value", "unit", "high", "meant", "mended"),
+    ("value", "unit", "high", "other_unit", "fixed"),
     [
-        (50.0, "m", 1.0, "centimetres", "0.5 (m)"),
-        (500.0, "m", 1.0, "millimetres", "0.5 (m)"),
+        (50.0, "m", 1.0, "centimeters", "0.5 (m)"),
+        (500.0, "m", 1.0, "millimeters", "0.5 (m)"),
         (45.0, "rad", 1.0, "degrees", "0.7854 (rad)"),
         (250.0, "s", 1.0, "milliseconds", "0.25 (s)"),
         (5.04, "m/s", 3.0, "km/h", "1.4 (m/s)"),
         (70000.0, "kg", 200.0, "grams", "70 (kg)"),
     ],
 )
-def test_a_slip_of_the_unit_is_recognised(value, unit, high, meant, mended):
+def test_a_wrong_unit_is_recognized(value, unit, high, other_unit, fixed):
     with pytest.raises(ParameterError, match="out of range") as caught:
         require_in_range("x", value, unit, 0.0, high)
-    assert str(caught.value).endswith(f"if it is in {meant}, write {mended}")
+    assert str(caught.value).endswith(f"if it is in {other_unit}, write {fixed}")
 
 
-@pytest.mark.parametrize("unit", UNIT_SLIPS)
-def test_no_slip_is_guessed_for_a_value_that_is_too_small(unit):
+@pytest.mark.parametrize("unit", UNIT_MISTAKES)
+def test_no_unit_is_guessed_for_a_value_that_is_too_small(unit):
     with pytest.raises(ParameterError, match=r"nearest allowed value is 10$"):
         require_in_range("x", -1.0, unit, 10.0, 1e9)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_finite_number_is_refused_even_without_bounds(value):
+def test_a_number_that_is_not_finite_is_refused_even_without_bounds(value):
     with pytest.raises(ParameterError, match=r"^x: .*; give a finite number$"):
         require_in_range("x", value, "m", -math.inf, math.inf)
 
 
-def test_nested_dataclasses_and_mappings_of_them_are_entered_by_dotted_names():
+def test_nested_dataclasses_and_mappings_have_dotted_names():
     assert message_of(Tree(leaf=Leaf(length=2.0))).startswith("leaf.length: 2 ")
     assert message_of(Tree(by_name={"Knee": Leaf(length=2.0)})).startswith("by_name.Knee.length: 2 ")
     assert message_of(Tree(angle=2.0), "gait.path").startswith("gait.path.angle: 2 ")
 
 
-def test_plain_mappings_and_texts_are_no_quantities():
+def test_plain_mappings_and_texts_are_not_checked():
     check(Tree(numbers={"anything": math.nan}))
 
 

@@ -126,8 +126,8 @@ def test_misspelt_field_is_answered_with_the_right_one(key):
 @pytest.mark.parametrize(
     ("key", "value", "mend"),
     [
-        ("gait.path.step_length", "50", ("centimetres", "0.5")),
-        ("gait.path.step_height", "200", ("millimetres", "0.2")),
+        ("gait.path.step_length", "50", ("centimeters", "0.5")),
+        ("gait.path.step_height", "200", ("millimeters", "0.2")),
         ("gait.path.toe_drop", "25", ("degrees", "0.4363")),
         ("gait.ramp.speed", "5", ("km/h", "1.389")),
         ("simulation.time_step", "1", ("milliseconds", "0.001")),

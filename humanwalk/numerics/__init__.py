@@ -1,10 +1,10 @@
-"""Small numerical tools without a subject of their own, and the array types."""
+"""Array types and small numerical functions that belong to no other subject."""
 
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
-"""Array of numbers; docstrings give shape and unit."""
+"""Array of floats; docstrings state shape and unit."""
 
 Indices = npt.NDArray[np.int_]
 Mask = npt.NDArray[np.bool_]

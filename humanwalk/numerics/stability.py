@@ -1,4 +1,4 @@
-"""The largest step at which a linear discrete update stays bounded."""
+"""Largest time step at which a linear discrete update is stable."""
 
 from collections.abc import Callable
 
@@ -6,25 +6,29 @@ import numpy as np
 
 from humanwalk.numerics import Array
 
-SHORTEST_STEP = 1e-7
-"""Nothing shorter is looked for [s]."""
+MIN_STEP = 1e-7
+"""Lower end of the search [s]."""
 
-ROUNDING = 1e-9
-"""How far above 1 an eigenvalue counts as 1: free motion of the floating base has eigenvalues of exactly 1."""
+EIGENVALUE_TOLERANCE = 1e-9
+"""Allowed excess over 1: free motion of the floating base has eigenvalues of 1, up to rounding."""
 
 
 def largest_stable_step(update: Callable[[float], Array], upper: float = 0.1) -> float:
-    """Largest step h [s] up to `upper` at which every eigenvalue of update(h) lies in the unit disc, to 1 %.
+    """Largest step h at which every eigenvalue of update(h) lies in the unit disc, by bisection.
 
     Args:
-        update: matrix of the discrete update x' = A(h) x, shape (m, m), stable for every step below a stable one.
-        upper: longest step that is looked at [s].
+        update: Matrix A(h) of the discrete update x' = A(h) x, shape (m, m). If it is stable at a step, it is stable
+            at all shorter ones.
+        upper: Upper end of the search [s].
+
+    Returns:
+        Step [s], at most 1 % shorter than the largest stable one.
     """
 
     def is_stable(h: float) -> bool:
-        return bool(np.abs(np.linalg.eigvals(update(h))).max() <= 1.0 + ROUNDING)
+        return bool(np.abs(np.linalg.eigvals(update(h))).max() <= 1.0 + EIGENVALUE_TOLERANCE)
 
-    low, high = SHORTEST_STEP, upper
+    low, high = MIN_STEP, upper
     if is_stable(high):
         return high
     while high / low > 1.01:
@@ -34,6 +38,6 @@ def largest_stable_step(update: Callable[[float], Array], upper: float = 0.1) ->
 
 
 def round_down(step: float) -> float:
-    """A step [s] to two digits, rounded down, so that the step a message names is one that is accepted."""
+    """Round a step [s] down to two digits, so that the step in an error message is accepted."""
     digit = 10.0 ** (np.floor(np.log10(step)) - 1)
     return float(digit * np.floor(step / digit * (1 + 1e-12)))

@@ -335,7 +335,7 @@ def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
     ("arguments", "said"),
     [
         (("--mass", "-3"), "mass: -3"),
-        (("--stature", "175"), "centimetres"),
+        (("--stature", "175"), "centimeters"),
         (("--mass", "nan"), "finite"),
     ],
     ids=str,
