@@ -47,14 +47,6 @@ class BalanceSupportParameters:
             rotational_damping=self.rotational_damping * torque_factor,
         )
 
-    @property
-    def diagonals(self) -> tuple[Array, Array]:
-        """Diagonals of K and D, [rotation; translation], shape (6,) each."""
-        return (
-            np.repeat((self.rotational_stiffness, self.stiffness), 3),
-            np.repeat((self.rotational_damping, self.damping), 3),
-        )
-
 
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:
     """Spatial force -K x - D (V - V_d) on the pelvis at Po, in W.
@@ -70,12 +62,13 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
     Returns:
         [torque; force], shape (6,) [N m, N].
     """
-    q, q_d = (Quaternion(wxyz / np.linalg.norm(wxyz)) for wxyz in (q_WP[:4], reference[:4]))
+    q, q_d = Quaternion(q_WP[:4] / np.linalg.norm(q_WP[:4])), Quaternion(reference[:4])
     rotation = AngleAxis(quaternion=q.multiply(q_d.inverse()))
-    x = np.concatenate((rotation.angle() * rotation.axis(), q_WP[4:] - reference[4:7]))
-    K, D = parameters.diagonals
-    wrench: Array = -K * x - D * (V_WP - reference[7:])
-    return wrench
+    translation, slip = q_WP[4:] - reference[4:7], V_WP - reference[7:]
+    torque = -parameters.rotational_stiffness * rotation.angle() * rotation.axis()
+    torque -= parameters.rotational_damping * slip[:3]
+    force = -parameters.stiffness * translation - parameters.damping * slip[3:]
+    return np.concatenate((torque, force))
 
 
 def largest_support_step(
@@ -92,7 +85,8 @@ def largest_support_step(
         parameters: the support.
         upper: longest step that is considered [s].
     """
-    stiffness, damping = parameters.diagonals
+    stiffness = np.repeat((parameters.rotational_stiffness, parameters.stiffness), 3)
+    damping = np.repeat((parameters.rotational_damping, parameters.damping), 3)
     K = np.concatenate((stiffness, kp))
 
     def update(h: float) -> Array:

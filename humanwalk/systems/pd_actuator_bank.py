@@ -126,20 +126,20 @@ class PdActuatorBank(LeafSystem):
         feedforward: Array = self._feedforward.Eval(context)
         return feedforward
 
-    def _law(self, context: Context) -> Array:
+    def _law(self, context: Context, state: Array) -> Array:
         """The law without limits, shape (n,)."""
-        state = self._state.Eval(context)
         q, v = self._joints.positions(state), self._joints.velocities(state)
         return pd_torque(q, v, *self._desired_now(context), self._kp, self._kd) + self._feedforward_now(context)
 
-    def _damping_in_plant(self, context: Context) -> Array:
-        """Torque of the part of the damping that the plant's joints have, opposite to their velocities, shape (n,)."""
-        damping: Array = self._joint_damping * self._joints.velocities(self._state.Eval(context))
+    def _damping_in_plant(self, state: Array) -> Array:
+        """Torque that the damping of the plant's joints takes from the law, shape (n,)."""
+        damping: Array = self._joint_damping * self._joints.velocities(state)
         return damping
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
-        tau = np.clip(self._law(context), -self._effort_limits, self._effort_limits)
-        output.SetFromVector(tau + self._damping_in_plant(context))
+        state = self._state.Eval(context)
+        tau = np.clip(self._law(context, state), -self._effort_limits, self._effort_limits)
+        output.SetFromVector(tau + self._damping_in_plant(state))
 
     def _calc_plant_desired(self, context: Context, output: BasicVector) -> None:
         q_d, v_d = self._desired_now(context)
@@ -151,7 +151,7 @@ class PdActuatorBank(LeafSystem):
         output.SetFromVector(self._feedforward_now(context) + rate_torque)
 
     def _calc_torque(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._net_actuation.Eval(context) - self._damping_in_plant(context))
+        output.SetFromVector(self._net_actuation.Eval(context) - self._damping_in_plant(self._state.Eval(context)))
 
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(np.abs(self._law(context)) >= self._effort_limits)
+        output.SetFromVector(np.abs(self._law(context, self._state.Eval(context))) >= self._effort_limits)
