@@ -24,7 +24,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.contact.ground_properties import ground_properties
-from humanwalk.contact.leg_contact import add_leg_capsules, let_legs_touch
+from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.control.pd_control import joint_gains
 from humanwalk.control.pd_laws import install_gains
@@ -90,7 +90,7 @@ def add_human_plant(builder: DiagramBuilder, scenario: Scenario, visuals: bool =
     plant.Finalize()
     exclude_unused_contact_sets(plant, scene_graph, scenario.contact)
     if legs_touch:
-        let_legs_touch(plant, scene_graph)
+        filter_leg_capsules(plant, scene_graph)
     if not visuals:
         remove_visuals(plant, scene_graph)
     return HumanPlant(plant, instance, scene_graph, JointMap.of(plant), kp, kd, effort_limits)

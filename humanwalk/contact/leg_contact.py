@@ -1,4 +1,6 @@
-"""Legs that cannot pass through each other: capsules along thigh, shank and foot, which touch the other leg only."""
+"""Contact of the legs with each other: capsules along thigh, shank and foot, which collide with the other leg only."""
+
+from collections.abc import Iterator
 
 import numpy as np
 from pydrake.geometry import (
@@ -7,72 +9,68 @@ from pydrake.geometry import (
     CollisionFilterDeclaration,
     GeometrySet,
     ProximityProperties,
+    Role,
     SceneGraph,
 )
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 
-from humanwalk.body import SIDES, Skeleton
+from humanwalk.body import SIDES, Side, Skeleton
 from humanwalk.body.anatomy import REFERENCE_STATURE
+from humanwalk.body.limbs import LEGS
+from humanwalk.numerics import Array
 
-RADIUS = {"Femur_Thigh": 0.06, "Tibia": 0.045, "Ankle": 0.035}
-"""Of the capsules of the reference human, by body [m]: inside of the flesh, which gives way (our choice)."""
+THIGH_RADIUS, SHANK_RADIUS, FOOT_RADIUS = 0.06, 0.045, 0.035
+"""Radii of the capsules of the reference human [m]: less than those of the flesh, which gives way (our choice)."""
 
-FOOT_LENGTH = 0.21
-"""Of the foot of the reference human from behind the ankle to its ball [m]."""
+HEEL, BALL = np.array((-0.04, 0.0, -0.03)), np.array((0.17, 0.0, -0.03))
+"""Rear and front end of the foot's capsule in the hindfoot's frame, of the reference human [m] (our choice)."""
 
 STIFFNESS = 2.0e4
-"""Of the contact of one leg with the other [N/m] (our choice: flesh)."""
+"""Point-contact stiffness of the legs [N/m] (our choice: flesh)."""
 
 DISSIPATION = 1.0
 """Hunt-Crossley dissipation [s/m] (our choice)."""
 
 FRICTION = 0.3
-"""Cloth on cloth (our choice)."""
+"""Coulomb coefficient, static and dynamic (our choice: cloth on cloth)."""
 
-
-def add_leg_capsules(plant: MultibodyPlant, skeleton: Skeleton) -> None:
-    """Add the capsules to a plant that is not finalised; `let_legs_touch` makes them count."""
-    properties = ProximityProperties()
-    AddContactMaterial(DISSIPATION, STIFFNESS, CoulombFriction(FRICTION, FRICTION), properties)
-    scale = skeleton.stature / REFERENCE_STATURE
-    for side in SIDES:
-        bodies = {part: f"{side}Leg_{part}" for part in RADIUS}
-        knee = skeleton.origins[bodies["Tibia"]] - skeleton.origins[bodies["Femur_Thigh"]]
-        ankle = skeleton.origins[bodies["Ankle"]] - skeleton.origins[bodies["Tibia"]]
-        foot = FOOT_LENGTH * scale * np.array((1.0, 0.0, 0.0))
-        hind = np.array((-0.04, 0.0, -0.03)) * scale
-        for part, begin, end in (
-            ("Femur_Thigh", np.zeros(3), knee),
-            ("Tibia", np.zeros(3), ankle),
-            ("Ankle", hind, hind + foot),
-        ):
-            way = end - begin
-            length, radius = float(np.linalg.norm(way)), RADIUS[part] * scale
-            X_BG = RigidTransform(RotationMatrix.MakeFromOneVector(way, 2), 0.5 * (begin + end))
-            plant.RegisterCollisionGeometry(
-                plant.GetBodyByName(bodies[part]),
-                X_BG,
-                Capsule(radius, max(length - 2.0 * radius, 0.01)),
-                f"{bodies[part]}{LEG_SET}",
-                properties,
-            )
-
-
-LEG_SET = "_beside_the_other_leg"
+LEG_SET = "_leg_contact"
 """End of the name of every capsule."""
 
 
-def let_legs_touch(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
-    """Filter the capsules of a finalised plant so that each meets those of the other leg and nothing else."""
-    inspector = scene_graph.model_inspector()
-    capsules: dict[str, GeometrySet] = {side: GeometrySet() for side in SIDES}
-    others = GeometrySet()
-    for geometry in inspector.GetAllGeometryIds():
-        if inspector.GetProximityProperties(geometry) is None:
-            continue
-        name = inspector.GetName(geometry).rsplit("::", 1)[-1]
-        (capsules["Right" if name.startswith("Right") else "Left"] if name.endswith(LEG_SET) else others).Add(geometry)
-    filters = scene_graph.collision_filter_manager()
+def add_leg_capsules(plant: MultibodyPlant, skeleton: Skeleton) -> None:
+    """Register the capsules of both legs with a plant that is not finalized; `filter_leg_capsules` must follow."""
+    properties = ProximityProperties()
+    AddContactMaterial(DISSIPATION, STIFFNESS, CoulombFriction(FRICTION, FRICTION), properties)
     for side in SIDES:
-        filters.Apply(CollisionFilterDeclaration().ExcludeWithin(capsules[side]).ExcludeBetween(capsules[side], others))
+        for body, start, end, radius in _capsules(skeleton, side):
+            axis = end - start
+            X_BG = RigidTransform(RotationMatrix.MakeFromOneVector(axis, 2), 0.5 * (start + end))
+            shape = Capsule(radius, float(np.linalg.norm(axis)) - 2.0 * radius)
+            plant.RegisterCollisionGeometry(plant.GetBodyByName(body), X_BG, shape, f"{body}{LEG_SET}", properties)
+
+
+def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Array, float]]:
+    """Body, ends including the caps in the body frame [m], shape (3,) each, and radius [m] of a leg's capsules."""
+    leg, origins, scale = LEGS[side], skeleton.origins, skeleton.stature / REFERENCE_STATURE
+    yield leg.thigh, np.zeros(3), origins[leg.shank] - origins[leg.thigh], THIGH_RADIUS * scale
+    yield leg.shank, np.zeros(3), origins[leg.hindfoot] - origins[leg.shank], SHANK_RADIUS * scale
+    yield leg.hindfoot, HEEL * scale, BALL * scale, FOOT_RADIUS * scale
+
+
+def filter_leg_capsules(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
+    """Restrict the capsules of a finalized plant to collisions with those of the other leg."""
+    inspector = scene_graph.model_inspector()
+    capsules = {side: GeometrySet() for side in SIDES}
+    others = set(inspector.GetAllGeometryIds(Role.kProximity))
+    for side, leg in LEGS.items():
+        for body in (leg.thigh, leg.shank, leg.hindfoot):
+            for geometry in plant.GetCollisionGeometriesForBody(plant.GetBodyByName(body)):
+                if inspector.GetName(geometry).endswith(LEG_SET):
+                    capsules[side].Add(geometry)
+                    others.remove(geometry)
+    filters = scene_graph.collision_filter_manager()
+    for own in capsules.values():
+        declaration = CollisionFilterDeclaration().ExcludeWithin(own)
+        filters.Apply(declaration.ExcludeBetween(own, GeometrySet(list(others))))

@@ -2,13 +2,15 @@
 
 import pytest
 
+from humanwalk.body.limbs import LEGS
 from humanwalk.diagrams.choose import make_diagram
 from humanwalk.scenario import load_scenario
 
-CROSSED = {f"{side}LegFemurSideMotion": -0.2 for side in ("Right", "Left")}
+CROSSED = {leg.hip_abduction: -0.2 for leg in LEGS.values()}
 """Adduction of both hips [rad]."""
 
-LEGS = ("Femur_Thigh", "Tibia", "Ankle")
+SIDE_OF = {body: side for side, leg in LEGS.items() for body in (leg.thigh, leg.shank, leg.hindfoot)}
+"""Bodies with capsules."""
 
 
 def pairs(diagram, **angles):
@@ -41,15 +43,11 @@ def test_legs_that_stand_do_not_touch(diagram):
 def test_legs_that_cross_do(diagram):
     crossed = pairs(diagram, **CROSSED)
     assert crossed
-    for pair in crossed:
-        right, left = sorted(pair, reverse=True)
-        assert right.startswith("RightLeg_")
-        assert left.startswith("LeftLeg_")
-        assert all(name.split("_", 1)[1] in LEGS for name in pair)
+    assert all({SIDE_OF[body] for body in pair} == {"Right", "Left"} for pair in crossed)
 
 
 def test_a_bent_leg_does_not_touch_itself(diagram):
-    assert pairs(diagram, RightLegTibiaMotion=2.2, RightLegFemurMotion=1.2) == set()
+    assert pairs(diagram, **{LEGS["Right"].knee: 2.2, LEGS["Right"].hip_flexion: 1.2}) == set()
 
 
 def test_without_it_they_pass_through_each_other():
