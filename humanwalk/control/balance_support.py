@@ -33,7 +33,7 @@ class BalanceSupportParameters:
     rotational_stiffness: float = quantity(30000.0, "N m/rad", 0.0, 1e5)
     """Torque per rotation of the pelvis."""
 
-    rotational_damping: float = quantity(300.0, "N m s/rad", 0.0, 1e4)
+    rotational_damping: float = quantity(270.0, "N m s/rad", 0.0, 1e4)
     """Torque per angular-velocity error."""
 
     def scaled(self, mass_factor: float, length_factor: float) -> "BalanceSupportParameters":
