@@ -19,14 +19,13 @@ def hermite(t: float, t0: float, x0: Array, t1: float, x1: Array) -> Array:
     Returns:
         [q; v] at t, shape (2n,).
     """
+    n = x1.size // 2
+    q0, v0, q1, v1 = x0[:n], x0[n:], x1[:n], x1[n:]
     if t1 <= t0:
-        q, v = x1.reshape(2, -1)
-        return np.concatenate((q + (t - t1) * v, v))
+        return np.concatenate((q1 + (t - t1) * v1, v1))
     h = t1 - t0
     inside = min(max(t, t0), t1)
     s = (inside - t0) / h
-    # Weights of q0, v0, q1, v1.
-    of_q = ((1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1))
-    of_v = (6 * s * (s - 1) / h, (1 - s) * (1 - 3 * s), 6 * s * (1 - s) / h, s * (3 * s - 2))
-    q, v = np.array((of_q, of_v)) @ np.concatenate((x0, x1)).reshape(4, -1)
+    q = (1 + 2 * s) * (1 - s) ** 2 * q0 + s**2 * (3 - 2 * s) * q1 + h * s * (1 - s) * ((1 - s) * v0 - s * v1)
+    v = 6 * s * (1 - s) / h * (q1 - q0) + (1 - s) * (1 - 3 * s) * v0 + s * (3 * s - 2) * v1
     return np.concatenate((q + (t - inside) * v, v))

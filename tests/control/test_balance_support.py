@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from humanwalk.body.joint_map import base_first_mass_matrix
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step, support_wrench
+from humanwalk.control.pd_control import ActuatorParameters, joint_gains
 
 K_ROTATION, K, D_ROTATION, D = 5000.0, 30000.0, 300.0, 2500.0
 SUPPORT = BalanceSupportParameters(
@@ -151,6 +152,13 @@ def test_a_heavier_taller_body_is_supported_alike():
 
 
 # Stability.
+
+
+@pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
+def test_the_default_support_is_stable_at_two_milliseconds_with_a_margin(plant, joints, law):
+    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    kp, kd = joint_gains(joints.names, M.diagonal()[6:], ActuatorParameters())
+    assert largest_support_step(M, kp, kd, law, BalanceSupportParameters()) > 1.05 * 0.002
 
 
 @given(mass=st.floats(1.0, 100.0), damping=st.floats(1e3, 1e5))

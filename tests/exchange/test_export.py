@@ -68,7 +68,7 @@ def test_angles_are_degrees_with_opensims_names_and_signs(opensim_folder, signal
     for joint in joint_names(signals):
         coordinate, factor = COORDINATES.get(joint, (joint, 1.0))
         expected = factor * np.rad2deg(signals[f"{joint}.angle_rad"].to_numpy())
-        np.testing.assert_allclose(columns[coordinate], expected, rtol=1e-10)
+        np.testing.assert_allclose(columns[coordinate], expected, rtol=1e-10, atol=1e-10)
 
 
 def test_signs_of_the_coordinates_are_those_of_the_motions():
@@ -87,7 +87,7 @@ def test_back_is_the_sum_of_its_joints(opensim_folder, signals):
     assert len(spine) == len(set(spine)) == 10
     for coordinate, (joints, factor) in SPINE_COORDINATES.items():
         total = sum(signals[f"{joint}.angle_rad"].to_numpy() for joint in joints)
-        np.testing.assert_allclose(columns[coordinate], factor * np.rad2deg(total), rtol=1e-10)
+        np.testing.assert_allclose(columns[coordinate], factor * np.rad2deg(total), rtol=1e-10, atol=1e-10)
 
 
 def test_pelvis_turns_as_opensims_coordinates_do(opensim_folder, signals):
@@ -118,7 +118,7 @@ def test_torques_are_newton_metres_of_every_joint(opensim_folder, signals):
     for joint in joint_names(signals):
         coordinate, factor = COORDINATES.get(joint, (joint, 1.0))
         expected = factor * signals[f"{joint}.torque_N_m"].to_numpy()
-        np.testing.assert_allclose(columns[f"{coordinate}_moment"], expected, rtol=1e-10)
+        np.testing.assert_allclose(columns[f"{coordinate}_moment"], expected, rtol=1e-10, atol=1e-10)
 
 
 def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
@@ -127,7 +127,7 @@ def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
     _, torques = read_storage(opensim_folder / "torques.sto")
     for joint, (coordinate, _) in COORDINATES.items():
         product = signals[f"{joint}.torque_N_m"].to_numpy() * np.rad2deg(signals[f"{joint}.angle_rad"].to_numpy())
-        np.testing.assert_allclose(torques[f"{coordinate}_moment"] * angles[coordinate], product, rtol=1e-9)
+        np.testing.assert_allclose(torques[f"{coordinate}_moment"] * angles[coordinate], product, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("side", SIDES)

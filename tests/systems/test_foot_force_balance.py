@@ -53,8 +53,8 @@ def test_with_the_desired_forces_the_plan_passes_unchanged(level, schedule, vert
     simulator = simulator_of(level, schedule, vertical)
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
-    np.testing.assert_array_equal(level.GetOutputPort("shift").Eval(context), 0.0)
-    np.testing.assert_array_equal(level.GetOutputPort("shifted_targets").Eval(context), TARGETS)
+    np.testing.assert_allclose(level.GetOutputPort("shift").Eval(context), 0.0, atol=1e-12)
+    np.testing.assert_allclose(level.GetOutputPort("shifted_targets").Eval(context), TARGETS, atol=1e-12)
 
 
 def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
@@ -63,7 +63,7 @@ def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
     shift, _ = shift_and_rate(level, simulator)
     right, left = shift.reshape(2, 3)
     assert right[2] < 0 < left[2]
-    np.testing.assert_array_equal(shift.reshape(2, 3)[:, :2], 0.0)
+    np.testing.assert_allclose(shift.reshape(2, 3)[:, :2], 0.0, atol=1e-12)
 
 
 def test_shift_and_its_rate_are_added_to_the_plan(level):
@@ -73,7 +73,9 @@ def test_shift_and_its_rate_are_added_to_the_plan(level):
     shift, rate = (part.reshape(2, 3) for part in shift_and_rate(level, simulator))
     added = np.zeros((2, 13))
     added[:, 4:7], added[:, 10:] = shift, rate
-    np.testing.assert_allclose(level.GetOutputPort("shifted_targets").Eval(context), TARGETS + added.ravel())
+    np.testing.assert_allclose(
+        level.GetOutputPort("shifted_targets").Eval(context), TARGETS + added.ravel(), atol=1e-12
+    )
 
 
 def test_the_rate_is_what_the_shift_does_until_the_next_update(level):

@@ -138,7 +138,7 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explici
 def test_without_feedforward_there_is_none(explicit, plant):
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=np.zeros(2 * N), state=state)
-    np.testing.assert_array_equal(explicit.GetOutputPort("actuation").Eval(context), 0.0)
+    np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", ["implicit", "explicit"])
@@ -155,9 +155,9 @@ def test_joints_whose_law_reaches_the_effort_limit_are_reported(implicit, explic
 def test_the_implicit_law_passes_the_feedforward(implicit):
     tau = np.arange(float(N))
     context = context_with(implicit, desired_state=np.ones(2 * N), feedforward=tau)
-    np.testing.assert_array_equal(implicit.GetOutputPort("actuation").Eval(context), tau)
+    np.testing.assert_allclose(implicit.GetOutputPort("actuation").Eval(context), tau, atol=1e-12)
     context = context_with(implicit, desired_state=np.ones(2 * N))
-    np.testing.assert_array_equal(implicit.GetOutputPort("actuation").Eval(context), 0.0)
+    np.testing.assert_allclose(implicit.GetOutputPort("actuation").Eval(context), 0.0, atol=1e-12)
 
 
 @settings(max_examples=20)
@@ -261,7 +261,7 @@ def test_from_the_sample_before_to_the_next_goes_their_cubic(implicit, rng, shar
     context, t = context_with(implicit, **samples), 1.0 + 0.01 * share
     context.SetTime(t)
     expected = hermite(t, 1.0, x0, 1.01, x1)
-    np.testing.assert_array_equal(implicit.GetOutputPort("held_desired_state").Eval(context), expected)
+    np.testing.assert_allclose(implicit.GetOutputPort("held_desired_state").Eval(context), expected, atol=1e-12)
 
 
 @given(rng=seeds, age=st.floats(-0.01, 0.02))
@@ -287,7 +287,7 @@ def test_without_sample_time_the_desired_state_is_current(implicit):
     desired = np.arange(2.0 * N)
     context = context_with(implicit, desired_state=desired)
     context.SetTime(7.0)
-    np.testing.assert_array_equal(implicit.GetOutputPort("held_desired_state").Eval(context), desired)
+    np.testing.assert_allclose(implicit.GetOutputPort("held_desired_state").Eval(context), desired, atol=1e-12)
 
 
 def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
@@ -446,6 +446,6 @@ def test_folded_rates_are_torque_and_leave_the_records_alone(plant, gains):
     context.SetTime(0.1)
     q, v = np.split(desired, 2)
     held = q + 0.1 * v
-    np.testing.assert_allclose(bank.GetOutputPort("held_desired_state").Eval(context), [*held, *v])
-    np.testing.assert_allclose(bank.GetOutputPort("plant_desired_state").Eval(context), [*held, *(0 * v)])
+    np.testing.assert_allclose(bank.GetOutputPort("held_desired_state").Eval(context), [*held, *v], atol=1e-12)
+    np.testing.assert_allclose(bank.GetOutputPort("plant_desired_state").Eval(context), [*held, *(0 * v)], atol=1e-12)
     np.testing.assert_allclose(bank.GetOutputPort("actuation").Eval(context), tau + gains[1] * v)

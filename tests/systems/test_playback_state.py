@@ -37,7 +37,7 @@ def test_state_is_the_reference(system, plant, joints):
     np.testing.assert_allclose(pelvis.EvalSpatialVelocityInWorld(body).get_coeffs(), V_WP.get_coeffs(), atol=1e-12)
     for i, name in enumerate(joints.names):
         joint = plant.GetJointByName(name)
-        assert (joint.get_angle(body), joint.get_angular_rate(body)) == (ANGLES[i], RATES[i])
+        assert (joint.get_angle(body), joint.get_angular_rate(body)) == pytest.approx((ANGLES[i], RATES[i]))
 
 
 def test_unconnected_input_is_refused(system):
