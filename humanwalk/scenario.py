@@ -35,8 +35,8 @@ from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.walking.command import CommandParameters
+from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.push import PushParameters
-from humanwalk.walking.step_planner import StepPlannerParameters
 
 Contact = Literal["point", "hydroelastic", "asperity"]
 Controller = Literal["thesis", "balanced"]

@@ -39,7 +39,6 @@ PENDING: dict[str, dict[str, str]] = {
     "size": {
         "founder": "scenario.py",
         "h1": "body/anatomy.py",
-        "h2": "walking/step_planner.py",
         "h6": "cli/main.py",
     },
     "array": {

@@ -11,7 +11,9 @@ from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Terrain
 from humanwalk.walking.command import Command
-from humanwalk.walking.step_planner import PlannerState, StepPlanner, StepPlannerParameters
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootTask, Phase, WalkingReference
 
 FOOT_FORCE_Z = {"Right": 2, "Left": 10}

@@ -1,6 +1,6 @@
-"""What the feet give the zero-moment point: where the pendulum stands on a foot, and how far it may be moved there.
+"""The base of support: where the zero-moment point is on a foot, and how far it can be moved there.
 
-Points of the ground plane are complex numbers x + iy [m]; headings are angles about z [rad].
+Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
 """
 
 from __future__ import annotations
@@ -14,52 +14,54 @@ from humanwalk.quantity import quantity
 
 @dataclass(frozen=True)
 class BaseOfSupport:
-    """The part of a foot that the zero-moment point may use, seen from the ankle."""
+    """The part of a foot that the zero-moment point may use, relative to the ankle."""
 
-    middle: float = quantity(0.03, "m", -0.05, 0.1)
-    """From the ankle forward to the point of the foot on which the pendulum stands."""
+    center: float = quantity(0.03, "m", -0.05, 0.1)
+    """Distance of the nominal zero-moment point ahead of the ankle."""
 
     roll: float = quantity(0.122, "s", 0.0, 0.3)
-    """Zero-moment point when single support ends, before the point on which the pendulum stands, per speed."""
+    """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
     back: float = quantity(0.04, "m", 0.0, 0.1)
-    """The zero-moment point stays this near behind the ankle."""
+    """Limit behind the ankle."""
 
     ball: float = quantity(0.09, "m", 0.0, 0.2)
-    """The zero-moment point stays this far before the ankle while the heel is up."""
+    """Lower limit ahead of the ankle while the heel is up."""
 
     front: float = quantity(0.2, "m", 0.0, 0.4)
-    """And this near before it."""
+    """Limit ahead of the ankle."""
 
     half_width: float = quantity(0.03, "m", 0.0, 0.1)
-    """And this near beside it."""
+    """Limit to either side."""
 
-    sideways: float = quantity(3.0, "", 0.1, 30.0)
-    """How much more a place beside the wanted one counts than one before or behind it, on the line between two feet:
-    the next step mends an error forward anywhere, one sideways only outward."""
+    lateral_weight: float = quantity(3.0, "", 0.1, 30.0)
+    """Weight of a sideways error relative to a forward error between two feet: the next step corrects a forward error
+    with any foothold, a sideways error only with one farther out."""
 
-    def middle_of(self, ankle: complex, heading: float) -> complex:
-        """The point of a foot on which the pendulum stands."""
-        return ankle + self.middle * cmath.exp(1j * heading)
+    def center_of(self, ankle: complex, heading: float) -> complex:
+        """The nominal zero-moment point on a foot."""
+        return ankle + self.center * cmath.exp(1j * heading)
 
-    def supported(
+    def clamp(
         self, zmp: complex, stance: complex, heading: float, other: complex | None = None, on_ball: bool = False
     ) -> complex:
-        """The zero-moment point, kept over the stance foot or its front, or over both feet and between.
+        """The zero-moment point, limited to the stance foot, to its front, or to both feet and the area between them.
 
         Args:
-            zmp: where it should be.
-            stance: ankle of the stance foot.
-            heading: of that foot.
-            other: ankle of the other foot where that carries too.
-            on_ball: whether the heel is up.
+            zmp: Desired zero-moment point.
+            stance: Ankle of the stance foot.
+            heading: Heading of that foot.
+            other: Ankle of the other foot in double support, else None.
+            on_ball: Whether the heel is up.
         """
         u = cmath.exp(1j * heading)
         anchor = stance
         if other is not None:
-            way, goal = ((point - other) / u for point in (stance, zmp))
-            square = way.real**2 + (self.sideways * way.imag) ** 2
-            along = (way.real * goal.real + self.sideways**2 * way.imag * goal.imag) / max(square, 1e-6)
+            # The nearest point of the line between the ankles, in the weighted norm.
+            line, goal = ((point - other) / u for point in (stance, zmp))
+            weight = self.lateral_weight**2
+            square = line.real**2 + weight * line.imag**2
+            along = (line.real * goal.real + weight * line.imag * goal.imag) / max(square, 1e-6)
             anchor = other + clip(along, 0.0, 1.0) * (stance - other)
         local = (zmp - anchor) / u
         x = clip(local.real, self.ball if on_ball else -self.back, self.front)

@@ -1,4 +1,4 @@
-"""How high the centre of mass is carried: in an arc over each stance leg, as people vault over it."""
+"""Height of the center of mass above the ground under the support: a mean, and an arc over each stance leg."""
 
 from __future__ import annotations
 
@@ -6,72 +6,78 @@ import math
 from dataclasses import dataclass
 
 from humanwalk.quantity import quantity
+from humanwalk.walking.scalar_motion import ScalarMotion
+
+FREE_REACH = 0.4
+"""Forward distance of a foothold from the center of mass that is reached without lowering it [m]: the feet roll over
+heel and ball."""
+
+FREE_SPREAD = 0.1
+"""The same sideways [m]: about half the distance of the hips."""
 
 
 @dataclass(frozen=True)
 class ComHeight:
-    """Height of the centre of mass."""
+    """Height of the center of mass."""
 
     walking: float = quantity(0.997, "", 0.8, 1.0)
-    """Height at the top of the arcs in walking, as a share of the height in straight standing."""
+    """Height at the top of the arcs in walking, relative to the height with straight legs."""
 
     standing: float = quantity(0.985, "", 0.8, 1.0)
     """The same in quiet standing."""
 
-    time: float = quantity(0.25, "s", 0.02, 2.0)
-    """Time constant with which the mean height changes."""
+    time_constant: float = quantity(0.25, "s", 0.02, 2.0)
+    """Time constant of the mean height."""
 
     amplitude: float = quantity(0.009, "m", 0.0, 0.05)
-    """Of the arcs at 1 m/s, with the square of the speed, as the drop between two straight legs grows with the step."""
+    """Amplitude of the arcs at 1 m/s; proportional to the square of the speed, as the drop between two straight legs is
+    to the square of the step length."""
 
-    lowest: float = quantity(0.03, "s", -0.3, 0.3)
-    """The height is lowest this long after a touchdown."""
+    delay: float = quantity(0.03, "s", -0.3, 0.3)
+    """Time from touchdown to the lowest height."""
 
-    free_reach: float = quantity(0.4, "m", 0.0, 1.0)
-    """A foothold this far before or behind the body needs no lower one: feet roll over heel and ball."""
+    lowering_time_constant: float = quantity(0.08, "s", 0.02, 2.0)
+    """Time constant of the mean height while a distant foothold requires a lower one."""
 
-    free_spread: float = quantity(0.1, "m", 0.0, 1.0)
-    """And this far beside it: about half the distance of the hips."""
-
-    stretch_time: float = quantity(0.08, "s", 0.02, 2.0)
-    """Time constant with which the body goes down for a foothold that is farther."""
-
-    def below_top(self, speed: float) -> float:
-        """How far the mean of the arcs is below their top at a forward speed [m]."""
+    def arc_amplitude(self, speed: float) -> float:
+        """Amplitude of the arcs [m] at a forward speed [m/s]."""
         return self.amplitude * speed**2
 
-    def highest_for(self, reach: complex, leg: float, standing: float) -> float:
-        """The greatest height from which a straight leg reaches a foothold [m].
+    def max_com_height_for_reach(self, reach: complex, leg: float, standing: float) -> float:
+        """Largest height of the center of mass above a foothold that a straight leg reaches [m].
 
         Args:
-            reach: the foothold, seen from the centre of mass along the heading [m].
-            leg: distance of hip and ankle of a straight leg [m].
-            standing: height of the centre of mass in straight standing [m].
+            reach: Foothold relative to the center of mass, along and across the heading [m].
+            leg: Distance of hip and ankle of a straight leg [m].
+            standing: Height of the center of mass with straight legs [m].
         """
-        forward = max(abs(reach.real) - self.free_reach, 0.0)
-        sideways = max(abs(reach.imag) - self.free_spread, 0.0)
+        forward = max(abs(reach.real) - FREE_REACH, 0.0)
+        sideways = max(abs(reach.imag) - FREE_SPREAD, 0.0)
         return standing - leg + math.sqrt(max(leg**2 - forward**2 - sideways**2, 0.0))
 
-    def approach(
-        self, height: float, rate: float, goal: float, dt: float, stretched: bool
-    ) -> tuple[float, float, float]:
-        """The mean height `dt` later, its rate, and its acceleration until then [m, m/s, m/s2]."""
-        time = self.stretch_time if stretched else self.time
-        acceleration = (goal - height) / time**2 - 2.0 * rate / time
-        rate += dt * acceleration
-        return height + dt * rate, rate, acceleration
-
-    def arc(self, since_touchdown: float, step: float, speed: float) -> tuple[float, float, float]:
-        """Height above the mean, with rate and acceleration [m, m/s, m/s2].
+    def approach(self, height: float, rate: float, goal: float, max_height: float) -> float:
+        """Acceleration of the mean height [m/s2], critically damped.
 
         Args:
-            since_touchdown: [s].
-            step: duration of a step [s].
-            speed: forward [m/s].
+            height: Mean height [m].
+            rate: Its rate [m/s].
+            goal: Desired height [m].
+            max_height: Largest height from which the foothold is within reach [m].
         """
-        amplitude, rate = self.below_top(speed), 2.0 * math.pi / step
-        angle = rate * (since_touchdown - self.lowest)
-        return (
+        time = self.time_constant if goal <= max_height else self.lowering_time_constant
+        return (min(goal, max_height) - height) / time**2 - 2.0 * rate / time
+
+    def arc(self, since_touchdown: float, step: float, speed: float) -> ScalarMotion:
+        """Height above the mean.
+
+        Args:
+            since_touchdown: Time since touchdown [s].
+            step: Duration of a step [s].
+            speed: Forward speed [m/s].
+        """
+        amplitude, rate = self.arc_amplitude(speed), 2.0 * math.pi / step
+        angle = rate * (since_touchdown - self.delay)
+        return ScalarMotion(
             -amplitude * math.cos(angle),
             amplitude * rate * math.sin(angle),
             amplitude * rate**2 * math.cos(angle),

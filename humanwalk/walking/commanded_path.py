@@ -1,6 +1,6 @@
-"""The way that the command lays over the ground, and the speed that brings the walker back to it.
+"""The path that the command describes over the ground, and the velocity that returns the walker to it.
 
-Points of the ground plane are complex numbers x + iy [m]; headings are angles about z [rad].
+Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
 """
 
 from __future__ import annotations
@@ -14,130 +14,140 @@ from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.command import Command
 
-SLOW = 0.1
-"""Below this speed [m/s] a walker turns with the command, wherever on the path he is."""
+MIN_SPEED = 0.1
+"""Commanded speed [m/s] below which the walker turns with the command instead of with the path."""
 
 SPACING = 0.05
-"""Way between two places that are remembered [m]."""
+"""Distance between two stored places [m]."""
 
-REMEMBERED = 40
-"""Number of these places: the last two metres."""
+STORED_PLACES = 40
+"""Number of stored places: the last two meters."""
 
 
 class Place(NamedTuple):
-    """A place on the path: position [m], heading there [rad], turn rate there [rad/s], way since the start [m]."""
+    """A place on the path.
+
+    Attributes:
+        position: [m].
+        heading: Heading of the path [rad].
+        turn: Turn rate [rad/s].
+        distance: Length of the path from the start [m].
+    """
 
     position: complex
     heading: float
     turn: float = 0.0
-    way: float = 0.0
+    distance: float = 0.0
 
     def advanced(self, command: Command, dt: float) -> Place:
-        """Where a command leads in `dt`: a piece of an arc, told by its middle heading."""
+        """The place that a command leads to in `dt` [s], along the chord of the arc."""
         turn = command.turn * dt
         step = command.velocity * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
-        return Place(self.position + step, self.heading + turn, command.turn, self.way + abs(command.velocity) * dt)
+        distance = self.distance + abs(command.velocity) * dt
+        return Place(self.position + step, self.heading + turn, command.turn, distance)
 
-    def towards(self, other: Place, share: float) -> Place:
-        """On the straight line to another place, which is near."""
+    def interpolated(self, end: Place, fraction: float) -> Place:
+        """The place at a fraction of the line to the next place."""
         return Place(
-            self.position + share * (other.position - self.position),
-            self.heading + share * (other.heading - self.heading),
-            other.turn,
-            self.way + share * (other.way - self.way),
+            self.position + fraction * (end.position - self.position),
+            self.heading + fraction * (end.heading - self.heading),
+            end.turn,
+            self.distance + fraction * (end.distance - self.distance),
         )
 
 
 @dataclass(frozen=True)
 class CommandedPath:
-    """The last two metres of the path: places `SPACING` apart, and at the end where the command has come to."""
+    """The last two meters of the path: places `SPACING` apart; the last one is the commanded place."""
 
     places: tuple[Place, ...]
 
     @staticmethod
     def begin(position: complex, heading: float) -> CommandedPath:
-        """The path of a walker who stands [m, rad]."""
+        """The path of a standing walker."""
         return CommandedPath((Place(position, heading),))
 
     @property
     def end(self) -> Place:
-        """Where the command has come to."""
+        """The commanded place."""
         return self.places[-1]
 
     def advanced(self, command: Command, dt: float) -> CommandedPath:
-        """The path `dt` later."""
+        """The path `dt` [s] later."""
         end = self.end.advanced(command, dt)
-        *kept, last = self.places
-        if not kept or last.way - kept[-1].way >= SPACING:
-            kept = [*kept, last][-REMEMBERED:]
-        return CommandedPath((*kept, end))
+        *stored, last = self.places
+        if not stored or last.distance - stored[-1].distance >= SPACING:
+            stored = [*stored, last][-STORED_PLACES:]
+        return CommandedPath((*stored, end))
 
-    def beside(self, walker: complex, command: Command) -> Place:
-        """The place that is nearest to a walker; past the end, where the command leads."""
+    def nearest(self, position: complex, command: Command) -> Place:
+        """The place of the path that is nearest to a position; beyond its end, the path continues along the command."""
         speed = abs(command.velocity)
-        if speed < SLOW:
+        if speed < MIN_SPEED:
             return self.end
         direction = command.velocity / speed * cmath.exp(1j * self.end.heading)
-        ahead = ((walker - self.end.position) / direction).real
+        ahead = ((position - self.end.position) / direction).real
         nearest = self.end.advanced(command, max(ahead, 0.0) / speed)
         for a, b in pairwise(self.places):
-            way = b.position - a.position
-            share = clip(((walker - a.position) / way).real, 0.0, 1.0) if way else 0.0
-            place = a.towards(b, share)
-            if abs(place.position - walker) < abs(nearest.position - walker):
+            line = b.position - a.position
+            fraction = clip(((position - a.position) / line).real, 0.0, 1.0) if line else 0.0
+            place = a.interpolated(b, fraction)
+            if abs(place.position - position) < abs(nearest.position - position):
                 nearest = place
         return nearest
 
-    def moved(self, way: complex) -> CommandedPath:
-        """The path somewhere else [m]."""
-        return CommandedPath(tuple(place._replace(position=place.position + way) for place in self.places))
+    def shifted(self, displacement: complex) -> CommandedPath:
+        """The path, displaced [m]."""
+        return CommandedPath(tuple(place._replace(position=place.position + displacement) for place in self.places))
 
 
 @dataclass(frozen=True)
 class PathFollowing:
-    """How the walker keeps to its path: sideways to its lane, and along it to where the command has come to."""
+    """Lane keeping across the path, and pace keeping along it."""
 
     lane_gain: float = quantity(0.9, "1/s", 0.0, 2.0)
     """Speed across the path per distance from it."""
 
     lane_speed_limit: float = quantity(0.1, "m/s", 0.0, 0.5)
-    """Greatest such speed."""
+    """Largest speed across the path."""
 
     pace_gain: float = quantity(0.3, "1/s", 0.0, 2.0)
-    """Speed along the path per distance behind the commanded place: so the mean speed is the commanded one."""
+    """Speed along the path per distance behind the nominal place, so that the mean speed is the commanded one."""
 
-    behind: float = quantity(0.25, "s", 0.0, 1.0)
-    """The walker's own place is so far behind the commanded one: a step keeps the speed that was commanded as it began,
-    half a step ago in the mean. Who ran after that too would overshoot where the command stops."""
+    lag: float = quantity(0.25, "s", 0.0, 1.0)
+    """Time by which the nominal place is behind the commanded one: a step keeps the speed that was commanded when it
+    began, on average half a step earlier. Without the lag the walker would stop too far."""
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
-    """Greatest such speed."""
+    """Largest speed along the path."""
 
-    def correction(self, path: CommandedPath, beside: Place, walker: complex, command: Command) -> complex:
-        """Speed that is added to the commanded one, seen along the heading beside the walker [m/s].
+    def correction(self, path: CommandedPath, nearest: Place, position: complex, command: Command) -> complex:
+        """Velocity to be added to the commanded one, relative to the heading of the nearest place [m/s].
 
         Args:
-            path: what was commanded.
-            beside: its place beside the walker.
-            walker: his place [m].
-            command: now.
+            path: The path.
+            nearest: Its place nearest to the walker.
+            position: Position of the walker [m].
+            command: The current command.
         """
-        aside = (beside.position - walker) / cmath.exp(1j * beside.heading)
-        correction = _bounded(self.lane_gain * aside, self.lane_speed_limit)
+        offset = (nearest.position - position) / cmath.exp(1j * nearest.heading)
+        correction = _limited(self.lane_gain * offset, self.lane_speed_limit)
         if command.velocity:
             speed = abs(command.velocity)
-            pace = self.pace_gain * (path.end.way - beside.way - self.behind * speed)
+            pace = self.pace_gain * (path.end.distance - nearest.distance - self.lag * speed)
             correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.velocity / speed
         return correction
 
-    def leashed(self, path: CommandedPath, beside: Place) -> CommandedPath:
-        """The path, not farther ahead or behind than the pace makes up for: who was held up does not run after it."""
+    def limit_lead(self, path: CommandedPath, nearest: Place) -> CommandedPath:
+        """The path, displaced so that its end is within the distance that the pace can make up for.
+
+        A walker that was held up does not have to catch up with the command.
+        """
         if self.pace_gain == 0.0:
             return path
-        gap = path.end.position - beside.position
-        leash = self.pace_speed_limit / self.pace_gain
-        return path.moved(_bounded(gap, leash) - gap)
+        lead = path.end.position - nearest.position
+        return path.shifted(_limited(lead, self.pace_speed_limit / self.pace_gain) - lead)
 
 
-def _bounded(vector: complex, limit: float) -> complex:
+def _limited(vector: complex, limit: float) -> complex:
     return vector if abs(vector) <= limit else vector * (limit / abs(vector))

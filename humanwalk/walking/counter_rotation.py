@@ -1,21 +1,31 @@
-"""How pelvis, chest and arms turn with the legs and against them."""
+"""Rotation of pelvis, chest and arms with and against the legs."""
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass
 
 from humanwalk.quantity import quantity
+from humanwalk.walking.walking_reference import BodyState
 
 
 @dataclass(frozen=True)
 class CounterRotation:
-    """Turns per distance between the feet along the way of the walk."""
+    """Angles per distance between the feet along the heading."""
 
     pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
-    """Of the pelvis, with the leading leg."""
+    """Yaw of the pelvis, with the leading leg."""
 
     chest: float = quantity(0.15, "rad/m", 0.0, 1.0)
-    """Of the chest, against it."""
+    """Yaw of the chest, against it."""
 
     arms: float = quantity(0.6, "rad/m", 0.0, 2.0)
     """Flexion of the shoulder opposite to the leading leg."""
+
+
+def foot_lead(body: BodyState, heading: float) -> tuple[float, float]:
+    """Distance of the left foot ahead of the right one along a heading [rad], and its rate [m, m/s]."""
+    u = cmath.exp(1j * heading)
+    lead = (body.left.position - body.right.position) / u
+    rate = (body.left.velocity - body.right.velocity) / u
+    return lead.real, rate.real

@@ -1,6 +1,7 @@
-"""Where the next foot goes: as the error of the pendulum asks, within reach, and never into the other leg.
+"""Where the next foot goes: where balance requires it, within reach, and clear of the other leg.
 
-Points of the ground plane are complex numbers x + iy [m]; a foothold is seen from the stance ankle along its heading.
+A foothold is a complex number x + iy [m] in the frame of the step: origin at the stance ankle, x along the heading.
+The limits were found with simulated pushes (docs/balance.md, "What a push teaches").
 """
 
 from __future__ import annotations
@@ -12,119 +13,127 @@ from humanwalk.body import Side
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 
+OUTWARD: dict[Side, float] = {"Left": -1.0, "Right": 1.0}
+"""Sign of y on the outer side of the swinging foot, by stance foot."""
+
+ABREAST = 0.15
+"""Distance ahead of or behind the stance foot up to which the legs are side by side [m]."""
+
+MAX_LENGTH = 1.0
+"""Largest distance of a foothold ahead of or behind the stance foot [m]."""
+
+SPEEDUP_LENGTH = 0.95 * MAX_LENGTH
+"""Length of the desired step beyond which the clock runs faster [m]."""
+
+MIN_OWN_SIDE_OFFSET = 0.05
+"""A foot that stands less than this on its own side of the stance foot cannot step across it [m]."""
+
+FILTER_TIME = 0.02
+"""Time constant of the low-pass filter of the foothold [s]."""
+
+FREEZE_TIME = 0.04
+"""The foothold is constant for this long before touchdown [s]."""
+
 
 @dataclass(frozen=True)
 class StepPlacement:
-    """Where feet go."""
+    """Limits of the footholds."""
 
-    width: float = quantity(0.16, "m", 0.08, 0.4)
-    """Between the lines of the two feet."""
+    step_width: float = quantity(0.16, "m", 0.08, 0.4)
+    """Nominal sideways distance of the ankles."""
 
-    narrowest: float = quantity(0.09, "m", 0.0, 0.3)
-    """Least sideways distance of a foothold beside the stance foot: below, the legs would touch."""
+    min_width: float = quantity(0.09, "m", 0.0, 0.3)
+    """Minimum sideways distance of a foothold beside the stance foot, where the legs would touch."""
 
-    beside: float = quantity(0.15, "m", 0.0, 0.5)
-    """A foothold farther than this before or behind the stance foot may be narrower, by as much as it is farther."""
+    max_crossover: float = quantity(0.1, "m", -0.3, 0.3)
+    """Largest distance of a foothold across the stance foot: one leg in front of the other."""
 
-    across: float = quantity(0.1, "m", -0.3, 0.3)
-    """So far may it be across at most: one leg in front of the other."""
+    max_width: float = quantity(0.85, "m", 0.2, 1.0)
+    """Maximum sideways distance."""
 
-    uncrossed: float = quantity(0.05, "m", -0.3, 0.3)
-    """A foot that is less than this beside the other before it leaves takes its time to leave."""
+    speedup_crossing: float = quantity(0.07, "m", 0.0, 0.3)
+    """The clock runs faster when the desired foothold is narrower than `min_width` by more than this."""
 
-    widest: float = quantity(0.85, "m", 0.2, 1.0)
-    """Greatest sideways distance."""
+    speedup_width: float = quantity(0.35, "m", 0.2, 1.0)
+    """The clock runs faster when the desired foothold is wider than this."""
 
-    longest: float = quantity(1.0, "m", 0.2, 1.5)
-    """Greatest distance forward or backward."""
+    passing_distance: float = quantity(0.12, "m", 0.0, 0.3)
+    """Sideways distance at which a foot that comes from across passes the stance foot."""
 
-    hurry_narrower: float = quantity(0.07, "m", 0.0, 0.3)
-    """The clock hurries when the foothold that balance wants would miss `narrowest` by more than this."""
+    max_com_distance: float = quantity(0.45, "m", 0.1, 1.0)
+    """Largest distance of a foothold ahead of or behind the center of mass at touchdown: beyond, the stretched leg does
+    not reach the ground in time."""
 
-    hurry_wider: float = quantity(0.35, "m", 0.2, 1.0)
-    """The clock hurries when that foothold is farther sideways than this."""
+    def min_step_width(self, x: float) -> float:
+        """Minimum sideways distance [m] of a foot that is x [m] ahead of the stance foot."""
+        return max(self.min_width - max(abs(x) - ABREAST, 0.0), -self.max_crossover)
 
-    passing: float = quantity(0.12, "m", 0.0, 0.3)
-    """A foot that comes from behind the other one passes it at this distance."""
-
-    reach: float = quantity(0.45, "m", 0.1, 1.0)
-    """Greatest distance of a foothold before or behind the centre of mass as it will be then: a leg that is stretched
-    farther hangs in the air, however soon its time is over."""
-
-    smoothing: float = quantity(0.02, "s", 0.0, 0.2)
-    """Time constant of the foothold."""
-
-    freeze: float = quantity(0.04, "s", 0.0, 0.2)
-    """The foothold is settled this long before touchdown."""
-
-    def least_width(self, x: float) -> float:
-        """Least sideways distance of a foot that is x before the stance foot, or -x behind it [m]."""
-        return max(self.narrowest - max(abs(x) - self.beside, 0.0), -self.across)
-
-    def way_round(self, place: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
-        """Where a foot that would run into the other must pass it, and the share of its way until there; else None.
+    def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
+        """Waypoint beside the stance foot on the way of a swinging foot that would hit it.
 
         Args:
-            place: where the swinging foot is.
-            foothold: where it is going.
-            stance: the foot that carries.
+            foot: Position of the swinging foot.
+            foothold: Where it goes.
+            stance: The stance foot.
+
+        Returns:
+            The waypoint, and the fraction of the way until it; None if the way is clear.
         """
-        outward = -1.0 if stance == "Left" else 1.0
-        if outward * place.imag >= self.narrowest or place.real * foothold.real >= 0.0:
+        outward = OUTWARD[stance]
+        if outward * foot.imag >= self.min_width or foot.real * foothold.real >= 0.0:
             return None
-        return 1j * outward * self.passing, place.real / (place.real - foothold.real)
+        return 1j * outward * self.passing_distance, foot.real / (foot.real - foothold.real)
 
-    def late_lift_off(self, wanted: complex, stance: Side, place: complex) -> float:
-        """How far the wanted foothold is across the stance foot [m]: then the foot that is to go there should be in the
-        air already. Nothing where it stands across itself: it must come out from behind first.
+    def crossover_distance(self, desired: complex, stance: Side, foot: complex) -> float:
+        """Distance of a desired foothold across the stance foot [m], in double support.
 
-        Args: see `within_reach`.
+        It is 0 if the foot to be lifted is itself across the stance foot: it has to come out from behind first.
+
+        Args: See `within_reach`.
         """
-        outward = -1.0 if stance == "Left" else 1.0
-        width = outward * wanted.imag
-        if outward * place.imag < self.uncrossed:
+        outward = OUTWARD[stance]
+        if outward * foot.imag < MIN_OWN_SIDE_OFFSET:
             return 0.0
-        return max(-width, 0.0)
+        return max(-outward * desired.imag, 0.0)
 
-    def within_reach(self, wanted: complex, stance: Side, place: complex) -> tuple[complex, float]:
-        """The nearest foothold that legs reach without touching, and by how much the wanted one calls for a hurry [m].
+    def within_reach(self, desired: complex, stance: Side, foot: complex) -> tuple[complex, float]:
+        """Nearest foothold that is within reach and clear of the stance leg.
 
         Args:
-            wanted: foothold.
-            stance: the foot that carries.
-            place: where the swinging foot is; it must pass beside the other before it may cross.
+            desired: Foothold that balance requires.
+            stance: The stance foot.
+            foot: Position of the swinging foot, which crosses only after it has passed the stance foot.
+
+        Returns:
+            The foothold, and the distance by which the desired one calls for a faster clock [m].
         """
-        outward = -1.0 if stance == "Left" else 1.0
-        width = outward * wanted.imag
-        beyond = max(
-            self.narrowest - self.hurry_narrower - width,
-            width - self.hurry_wider,
-            abs(wanted.real) - 0.95 * self.longest,
+        outward = OUTWARD[stance]
+        width = outward * desired.imag
+        excess = max(
+            self.min_width - self.speedup_crossing - width,
+            width - self.speedup_width,
+            abs(desired.real) - SPEEDUP_LENGTH,
             0.0,
         )
-        x = clip(wanted.real, -self.longest, self.longest)
-        has_passed = place.real * x > 0.0
-        narrowest = max(self.least_width(x), self.least_width(place.real)) if has_passed else self.narrowest
-        foothold = complex(x, outward * clip(width, narrowest, self.widest))
-        return foothold, beyond
+        x = clip(desired.real, -MAX_LENGTH, MAX_LENGTH)
+        has_passed = foot.real * x > 0.0
+        min_width = max(self.min_step_width(x), self.min_step_width(foot.real)) if has_passed else self.min_width
+        return complex(x, outward * clip(width, min_width, self.max_width)), excess
 
-    def near_body(self, foothold: complex, com: complex) -> complex:
-        """The foothold, not farther before or behind the centre of mass at touchdown than a leg that carries reaches.
-
-        Args:
-            foothold, com: along the heading, seen from the stance foot [m].
-        """
-        return complex(clip(foothold.real, com.real - self.reach, com.real + self.reach), foothold.imag)
+    def near_com(self, foothold: complex, com: complex) -> complex:
+        """The foothold, limited to `max_com_distance` from the center of mass at touchdown."""
+        limit = self.max_com_distance
+        return complex(clip(foothold.real, com.real - limit, com.real + limit), foothold.imag)
 
 
 def foothold_gain(frequency: float, double_support: float) -> float:
-    """How far the foothold follows the error of the DCM at touchdown.
+    """Displacement of the foothold per error of the DCM at touchdown.
 
-    The DCM counts from where the zero-moment point will be, which leaves the old foot only during double support.
+    It is greater than 1 because the zero-moment point reaches the new foot only at the end of double support.
 
     Args:
-        frequency: of the pendulum [1/s].
-        double_support: its duration [s].
+        frequency: Natural frequency of the pendulum [1/s].
+        double_support: Duration of double support [s].
     """
     wt = frequency * double_support
     return wt / (1.0 - math.exp(-wt))

@@ -1,8 +1,8 @@
-"""The linear inverted pendulum on level ground, told by its divergent component of motion (DCM).
+"""The linear inverted pendulum and its divergent component of motion (DCM).
 
-A point of the ground plane is a complex number x + iy [m], and a turn by the angle a is a product with exp(ia).
-With the centre of mass c at constant height h and the zero-moment point z, c'' = w^2 (c - z), w = sqrt(g / h). The
-DCM xi = c + c'/w runs away from the zero-moment point, xi' = w (xi - z); the rest of the motion follows by itself
+A point of the level plane is a complex number x + iy [m]; multiplication by exp(ia) rotates it by the angle a. With the
+center of mass c at a constant height h above the zero-moment point z, c'' = w^2 (c - z), w = sqrt(g / h). The DCM
+xi = c + c'/w diverges from the zero-moment point, xi' = w (xi - z), and the center of mass converges to the DCM
 (Hof 2008; Takenaka et al. 2009; Englsberger et al. 2015).
 """
 
@@ -12,8 +12,9 @@ import cmath
 import math
 from typing import NamedTuple
 
-GRAVITY = 9.81
-"""[m/s2]"""
+from humanwalk.body import Side
+from humanwalk.body.limbs import other_side
+from humanwalk.quantity import GRAVITY
 
 
 def natural_frequency(height: float) -> float:
@@ -27,10 +28,11 @@ def divergent_component(com: complex, velocity: complex, frequency: float) -> co
 
 
 class ZmpSegment(NamedTuple):
-    """The zero-moment point on a straight line at constant speed.
+    """A zero-moment point that moves along a line at constant speed.
 
-    start, end: where it is at the beginning and at the end [m].
-    duration: [s], not negative.
+    Attributes:
+        start, end: Where it begins and ends [m].
+        duration: [s], not negative.
     """
 
     start: complex
@@ -38,99 +40,95 @@ class ZmpSegment(NamedTuple):
     duration: float
 
     def at(self, t: float) -> complex:
-        """Zero-moment point at t [s] after the beginning, which is kept between the two ends."""
+        """The zero-moment point t [s] after the start; constant before the start and after the end."""
         if self.duration <= 0.0:
             return self.end
         return self.start + (self.end - self.start) * min(max(t / self.duration, 0.0), 1.0)
 
-    def rest(self, t: float) -> ZmpSegment:
-        """What is left of the segment after t [s]."""
+    def remainder(self, t: float) -> ZmpSegment:
+        """The part of the segment from t [s] after the start."""
         return ZmpSegment(self.at(t), self.end, max(self.duration - max(t, 0.0), 0.0))
 
     def forward(self, xi: complex, frequency: float) -> complex:
-        """DCM at the end from the DCM at the beginning."""
+        """DCM at the end from the DCM at the start."""
         x = frequency * self.duration
         return self.end + (xi - self.start) * math.exp(x) - (self.end - self.start) * _mean_growth(x)
 
     def backward(self, xi: complex, frequency: float) -> complex:
-        """DCM at the beginning from the DCM at the end; the inverse of `forward`."""
+        """DCM at the start from the DCM at the end; the inverse of `forward`."""
         x = frequency * self.duration
         return self.start + (xi - self.end) * math.exp(-x) + (self.end - self.start) * _mean_growth(-x)
 
 
 def _mean_growth(x: float) -> float:
-    """(exp(x) - 1) / x, also where x is next to nothing."""
+    """(exp(x) - 1) / x; 1 at x = 0."""
     return math.expm1(x) / x if x != 0.0 else 1.0
 
 
 def forward(segments: tuple[ZmpSegment, ...], xi: complex, frequency: float) -> complex:
-    """DCM at the end of consecutive segments from the DCM at their beginning."""
+    """DCM at the end of consecutive segments from the DCM at their start."""
     for segment in segments:
         xi = segment.forward(xi, frequency)
     return xi
 
 
 def backward(segments: tuple[ZmpSegment, ...], xi: complex, frequency: float) -> complex:
-    """DCM at the beginning of consecutive segments from the DCM at their end."""
+    """DCM at the start of consecutive segments from the DCM at their end."""
     for segment in reversed(segments):
         xi = segment.backward(xi, frequency)
     return xi
 
 
-def carried(com: complex, xi: complex, zmp: complex, duration: float, frequency: float) -> complex:
-    """Centre of mass after a duration [s] over a zero-moment point that stays [m]."""
+def com_after(duration: float, com: complex, xi: complex, zmp: complex, frequency: float) -> complex:
+    """Center of mass after a duration [s] with a constant zero-moment point [m]."""
     growth = math.exp(frequency * max(duration, 0.0))
     half = 0.5 * (xi - zmp)
     return zmp + (com - zmp - half) / growth + half * growth
 
 
-class HalfSteps(NamedTuple):
-    """Something for the step that stands on the left foot and the one that stands on the right."""
+class PerStance(NamedTuple):
+    """A quantity of the step on the left foot and of the step on the right foot."""
 
     left: complex
     right: complex
 
+    def on(self, stance: Side) -> complex:
+        """The value for a stance foot."""
+        return self.left if stance == "Left" else self.right
+
 
 class PeriodicGait(NamedTuple):
-    """A walk that repeats itself every two steps, turned by twice `turn`.
+    """A walk that repeats itself every two steps, rotated by twice `turn`.
 
-    A step begins when a foot lands: the zero-moment point goes to it from the old foot (double support), and along
-    it (single support). Each step is seen from its own stance foot: origin there, x along its heading.
+    A step begins at touchdown. In double support the zero-moment point moves from the old to the new stance foot, in
+    single support along the stance foot. All points are relative to the stance foot of the step, x along its heading.
 
-    displacement: from each stance foot to the next foothold [m]; its two values may differ, so that the walk goes
-        sideways and keeps its width.
-    turn: of the heading from step to step [rad].
-    roll_start, roll_end: zero-moment point at the beginning and end of single support, from the stance foot [m].
-    double_support, single_support: durations [s].
+    Attributes:
+        displacement: From each stance foot to the next foothold [m]; the two differ in a sideways walk.
+        turn: Change of the heading from step to step [rad].
+        roll: Displacement of the zero-moment point in single support [m].
+        double_support, single_support: Durations [s].
     """
 
-    displacement: HalfSteps
+    displacement: PerStance
     turn: float
-    roll_start: complex
-    roll_end: complex
+    roll: complex
     double_support: float
     single_support: float
 
-    def segments(self, stance_is_left: bool) -> tuple[ZmpSegment, ZmpSegment]:
-        """The zero-moment point of one step, seen from its stance foot."""
-        back = self.displacement.right if stance_is_left else self.displacement.left
-        old_end = (self.roll_end - back) * cmath.exp(-1j * self.turn)
-        return (
-            ZmpSegment(old_end, self.roll_start, self.double_support),
-            ZmpSegment(self.roll_start, self.roll_end, self.single_support),
-        )
+    def segments(self, stance: Side) -> tuple[ZmpSegment, ZmpSegment]:
+        """The zero-moment point in double and single support of one step."""
+        old_end = (self.roll - self.displacement.on(other_side(stance))) * cmath.exp(-1j * self.turn)
+        return (ZmpSegment(old_end, 0.0, self.double_support), ZmpSegment(0.0, self.roll, self.single_support))
 
-    def end_offsets(self, frequency: float) -> HalfSteps:
-        """DCM at the end of each step, seen from its stance foot: the only ones with which the walk repeats itself.
+    def end_offsets(self, frequency: float) -> PerStance:
+        """DCM at the end of each step, for which the walk is periodic.
 
-        With a = exp(-w T), the end b of a step and the end b' of the next obey b = d + exp(i turn) (s' + a b'),
-        where s' is the beginning of the next step for b' = 0; two such equations are solved for both ends.
+        With u = exp(i turn) and a = exp(-w T), the end b of a step and the end b' of the next one obey
+        b = d + u (s' + a b'), where s' is the DCM at the start of the next step for b' = 0: two linear equations.
         """
-        turn = cmath.exp(1j * self.turn)
-        gain = turn * math.exp(-frequency * (self.double_support + self.single_support))
-        from_left = self.displacement.left + turn * backward(self.segments(False), 0.0, frequency)
-        from_right = self.displacement.right + turn * backward(self.segments(True), 0.0, frequency)
-        return HalfSteps(
-            left=(from_left + gain * from_right) / (1.0 - gain**2),
-            right=(from_right + gain * from_left) / (1.0 - gain**2),
-        )
+        u = cmath.exp(1j * self.turn)
+        ua = u * math.exp(-frequency * (self.double_support + self.single_support))
+        left = self.displacement.left + u * backward(self.segments("Right"), 0.0, frequency)
+        right = self.displacement.right + u * backward(self.segments("Left"), 0.0, frequency)
+        return PerStance(left=(left + ua * right) / (1.0 - ua**2), right=(right + ua * left) / (1.0 - ua**2))

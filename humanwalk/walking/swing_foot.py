@@ -1,8 +1,7 @@
-"""The foot in the air: towards a foothold that may move, over a Hermite spline of height and pitch."""
+"""Trajectory of the swinging foot: over the level plane to a foothold that may move; height and pitch by splines."""
 
 from __future__ import annotations
 
-import cmath
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,17 +10,24 @@ import numpy as np
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
+from humanwalk.walking.scalar_motion import ScalarMotion
 
 HEIGHT_SHAPE = (1.0, 0.6, 0.27)
-"""Height of the ankle at the three quarters within the swing, as a share of its apex: people's foot rises with the
-heel that leaves and is low again by the middle of the swing."""
+"""Height of the ankle at the inner quarters of the swing, relative to its apex. The human ankle rises at heel-off and
+is low from mid-swing on (docs/balance.md, "What makes a walk regular, straight and cheap")."""
 
-PITCH_BLEND = (0.0, -0.1, 0.36, 0.87, 1.0)
-"""Share of the pitch's way at the quarters of the swing: toes still point down while the knee bends (people's whole
-foot: 0.1, 0.5, 0.9)."""
+PITCH_SHAPE = (0.0, -0.1, 0.36, 0.87, 1.0)
+"""Pitch at the quarters of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
+humans have 0.1, 0.5 and 0.9 at the inner quarters."""
 
-BRISKEST = 1.7
-"""Speed from which the foot lands no steeper [m/s]."""
+MAX_PITCH_SPEED = 1.7
+"""Forward speed above which the pitch at touchdown is constant [m/s]."""
+
+LANDING_DEPTH = 0.003
+"""Depth below the ground at which the trajectory ends [m], so that the swing ends by contact."""
+
+JERK_LIMIT = 6000.0
+"""Bound on the third derivative of the position [m/s3], so that a foothold that jumps does not jerk the leg."""
 
 
 @dataclass(frozen=True)
@@ -29,52 +35,51 @@ class SwingParameters:
     """Shape of the swing."""
 
     lift: float = quantity(0.045, "m", 0.0, 0.3)
-    """Rise of the ankle above where it leaves the ground; the heel-off before adds to it."""
+    """Rise of the ankle above its height at toe-off."""
 
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
-    """The ankle rises at least this far above where it is in standing: a foot that leaves flat would scuff."""
+    """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
 
     toe_up: float = quantity(0.26, "rad s/m", 0.0, 0.6)
-    """Pitch of the foot at heel strike, per speed forward up to `BRISKEST`."""
+    """Pitch at touchdown per forward speed, toes up: 21 degrees at 1.4 m/s."""
 
-    landing_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
+    landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    landing_depth: float = quantity(0.003, "m", 0.0, 0.03)
-    """How far below the ground the swing aims, so that it ends by touching."""
-
     push_off: float = quantity(8.6, "1/m", 0.0, 30.0)
-    """Acceleration of the foot over ground as it leaves, per squared speed of the walk."""
+    """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
-    landing_pace: float = quantity(0.55, "", 0.0, 1.0)
-    """Speed of the foot over ground at touchdown, as a share of that of the walk."""
+    landing_speed_ratio: float = quantity(0.55, "", 0.0, 1.0)
+    """Horizontal speed at touchdown, relative to the speed of the walk."""
 
-    landing_brake: float = quantity(22.0, "1/s", 0.0, 50.0)
-    """Deceleration of the foot over ground at touchdown, per speed of the walk: it is on its way until it lands."""
+    landing_deceleration: float = quantity(22.0, "1/s", 0.0, 50.0)
+    """Horizontal deceleration at touchdown, per speed of the walk."""
 
-    jerk_limit: float = quantity(6000.0, "m/s3", 500.0, 50000.0)
-    """Bound on the third derivative of the foot's way over ground: a foothold that jumps does not jerk the leg."""
+    def touchdown_pitch(self, speed: float) -> float:
+        """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
+        return self.toe_up * clip(speed, 0.0, MAX_PITCH_SPEED)
 
-    def heel_strike(self, speed: float) -> float:
-        """Pitch at touchdown, toes up positive [rad], at a forward speed [m/s]."""
-        return self.toe_up * clip(speed, 0.0, BRISKEST)
+    def toe_off_acceleration(self, velocity: complex) -> complex:
+        """Horizontal acceleration at toe-off [m/s2] for a velocity of the walk [m/s]."""
+        return self.push_off * abs(velocity) * velocity
 
-    def leaving(self, pace: complex) -> complex:
-        """Acceleration over ground of the foot that leaves [m/s2], at a velocity of the walk [m/s]."""
-        return self.push_off * abs(pace) * pace
+    def landing(self, foothold: complex, velocity: complex) -> PlanarMotion:
+        """Horizontal motion at touchdown for a velocity of the walk [m/s]."""
+        return PlanarMotion(foothold, self.landing_speed_ratio * velocity, -self.landing_deceleration * velocity)
 
 
 class PlanarMotion(NamedTuple):
-    """Position, velocity and acceleration of a point over ground, complex [m, m/s, m/s2]."""
+    """Position, velocity and acceleration of a point over the level plane, complex [m, m/s, m/s2]."""
 
     position: complex
     velocity: complex = 0.0
     acceleration: complex = 0.0
 
-    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
-        """The motion `dt` later on the quintic that comes to `goal` in `remaining` seconds.
+    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float = JERK_LIMIT) -> PlanarMotion:
+        """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds.
 
-        The quintic is made anew at every call, so that the goal may move; its jerk is bounded.
+        The jerk is that of the quintic from the current motion, bounded, and constant for `dt`; the goal may move from
+        call to call.
         """
         r = max(remaining, 2.0 * dt)
         jerk = 60.0 * (goal.position - self.position) / r**3
@@ -88,29 +93,14 @@ class PlanarMotion(NamedTuple):
             self.acceleration + dt * jerk,
         )
 
-    def with_sideways_of(self, other: PlanarMotion, heading: float) -> PlanarMotion:
-        """This motion along a heading [rad], and another's across it."""
-        u = cmath.exp(1j * heading)
-
-        def mixed(along: complex, across: complex) -> complex:
-            return u * complex((along / u).real, (across / u).imag)
-
+    def with_sideways_of(self, other: PlanarMotion, direction: complex) -> PlanarMotion:
+        """This motion along a unit vector, combined with another motion across it."""
         return PlanarMotion(
-            mixed(self.position, other.position),
-            mixed(self.velocity, other.velocity),
-            mixed(self.acceleration, other.acceleration),
+            *(
+                direction * complex((along / direction).real, (across / direction).imag)
+                for along, across in zip(self, other, strict=True)
+            )
         )
-
-
-class HeightAndPitch(NamedTuple):
-    """Height of the ankle [m] and pitch of the foot [rad, toes down positive] with rates and accelerations."""
-
-    height: float
-    height_rate: float
-    height_acceleration: float
-    pitch: float
-    pitch_rate: float
-    pitch_acceleration: float
 
 
 class Cubic(NamedTuple):
@@ -121,63 +111,56 @@ class Cubic(NamedTuple):
     c: float
     d: float
 
-    def at(self, s: float, rate: float) -> tuple[float, float, float]:
-        """Value, and the first two derivatives by time while s grows at a rate [1/s]."""
+    def at(self, s: float) -> ScalarMotion:
+        """Value and the first two derivatives by s."""
         a, b, c, d = self
-        return (
-            a + s * (b + s * (c + s * d)),
-            rate * (b + s * (2.0 * c + 3.0 * d * s)),
-            rate * rate * (2.0 * c + 6.0 * d * s),
-        )
+        return ScalarMotion(a + s * (b + s * (c + s * d)), b + s * (2.0 * c + 3.0 * d * s), 2.0 * c + 6.0 * d * s)
 
 
 @dataclass(frozen=True)
 class SwingProfile:
-    """Height and pitch of a swinging foot over its progress from 0 at lift-off to 1 at touchdown."""
+    """Height of the ankle and pitch of the foot over the progress from 0 at toe-off to 1 at touchdown."""
 
     pieces: tuple[tuple[Cubic, Cubic], ...]
-    """Height and pitch over equal shares of the progress."""
-
-    duration: float
+    """Height [m] and pitch [rad] over equal parts of the progress."""
 
     @staticmethod
-    def from_lift_off(
+    def from_toe_off(
         height: float,
         height_rate: float,
         pitch: float,
         pitch_rate: float,
-        ground: float,
+        flat_height: float,
         toe_up: float,
         duration: float,
         parameters: SwingParameters,
     ) -> SwingProfile:
-        """The profile that carries on from a foot as it is at lift-off.
+        """The profile that continues the motion of a foot at toe-off.
 
         Args:
-            height, height_rate: of the ankle [m, m/s].
-            pitch, pitch_rate: of the foot [rad, rad/s].
-            ground: height of the ankle over which the foot stands flat [m].
-            toe_up: pitch at touchdown, toes up positive [rad].
-            duration: of the swing [s].
-            parameters: its shape.
+            height, height_rate: Ankle [m, m/s].
+            pitch, pitch_rate: Foot, toes down positive [rad, rad/s].
+            flat_height: Height of the ankle if the foot stood flat there [m].
+            toe_up: Pitch at touchdown, toes up positive [rad].
+            duration: Duration of the swing [s].
+            parameters: Shape of the swing.
         """
-        apex = max(height + parameters.lift, ground + parameters.clearance)
-        heights = np.array(
-            (height, *(ground + np.array(HEIGHT_SHAPE) * (apex - ground)), ground - parameters.landing_depth)
-        )
-        pitches = pitch + np.array(PITCH_BLEND) * (-toe_up - pitch)
+        apex = max(height + parameters.lift, flat_height + parameters.clearance)
+        inner = flat_height + np.array(HEIGHT_SHAPE) * (apex - flat_height)
+        heights = np.array((height, *inner, flat_height - LANDING_DEPTH))
+        pitches = pitch + np.array(PITCH_SHAPE) * (-toe_up - pitch)
         points = np.column_stack((heights, pitches))
         tangents = hermite_tangents(points)
         quarter = duration / (len(points) - 1)
         tangents[0] = height_rate * quarter, pitch_rate * quarter
-        tangents[-1] = -parameters.landing_speed * quarter, 0.0
+        tangents[-1] = -parameters.landing_sink_rate * quarter, 0.0
         coefficients = CubicHermite(points, tangents).coefficients.tolist()
-        return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients), duration)
+        return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients))
 
-    def at(self, progress: float) -> HeightAndPitch:
-        """The profile at a progress in [0, 1]; beyond, it stays at its ends' values."""
-        u = clip(progress, 0.0, 1.0) * len(self.pieces)
-        i = min(int(u), len(self.pieces) - 1)
-        rate = len(self.pieces) / self.duration
+    def at(self, progress: float) -> tuple[ScalarMotion, ScalarMotion]:
+        """Height and pitch with their derivatives by the progress, which is clipped to [0, 1]."""
+        n = len(self.pieces)
+        s = clip(progress, 0.0, 1.0) * n
+        i = min(int(s), n - 1)
         height, pitch = self.pieces[i]
-        return HeightAndPitch(*height.at(u - i, rate), *pitch.at(u - i, rate))
+        return height.at(s - i).time_scaled(n), pitch.at(s - i).time_scaled(n)

@@ -1,6 +1,7 @@
-"""What the step planner knows of the body, and what it asks of the whole-body program.
+"""Input and output of the step planner: the measured state of the body, and the reference for the whole-body program.
 
-Points of the ground plane are complex numbers x + iy [m]; headings are angles about z [rad].
+Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad]. The frame of a foot has its
+origin at the ankle, and the axes of W when the foot stands flat and faces +x.
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ from enum import Enum
 from typing import Self
 
 from humanwalk.body import Side
-from humanwalk.walking.lipm import GRAVITY
+from humanwalk.quantity import GRAVITY
+from humanwalk.walking.scalar_motion import ScalarMotion
 from humanwalk.walking.swing_foot import PlanarMotion
 
 
 class Phase(Enum):
-    """What the walker is at."""
+    """Phase of the walk."""
 
     STAND = 0
     WEIGHT_SHIFT = 1
@@ -24,7 +26,7 @@ class Phase(Enum):
 
 
 class FootTask(Enum):
-    """What a foot is at."""
+    """Phase of a foot."""
 
     FLAT = 0
     HEEL_STRIKE = 1
@@ -34,12 +36,13 @@ class FootTask(Enum):
 
 @dataclass(frozen=True)
 class FootState:
-    """A foot as it is. Its frame sits at the ankle, parallel to the world when it stands flat and faces +x.
+    """Measured state of a foot.
 
-    position, velocity: of the ankle over ground, complex [m, m/s].
-    height, height_rate: of the ankle [m, m/s].
-    yaw, pitch, pitch_rate: [rad, rad/s], toes down positive.
-    force: vertical force from the ground [N].
+    Attributes:
+        position, velocity: Ankle over the level plane, complex [m, m/s].
+        height, height_rate: Ankle in W [m, m/s].
+        yaw, pitch, pitch_rate: Orientation of the foot [rad, rad/s]; pitch is positive with the toes down.
+        force: Vertical ground reaction force [N].
     """
 
     position: complex
@@ -54,7 +57,14 @@ class FootState:
 
 @dataclass(frozen=True)
 class BodyState:
-    """What the planner knows of the body: time [s], centre of mass over ground and above it [m, m/s], the feet."""
+    """Measured state of the body.
+
+    Attributes:
+        time: Time [s].
+        com, com_velocity: Center of mass over the level plane, complex [m, m/s].
+        com_height: Center of mass in W [m].
+        right, left: The feet.
+    """
 
     time: float
     com: complex
@@ -64,43 +74,47 @@ class BodyState:
     left: FootState
 
     def foot(self, side: Side) -> FootState:
-        """One foot."""
+        """The foot of a side."""
         return self.right if side == "Right" else self.left
 
 
 @dataclass(frozen=True)
 class FootReference:
-    """What a foot should do.
+    """Reference of a foot.
 
-    task: see `FootTask`; it says which of the others count.
-    load: largest share of its strength that the foot may press with, 0 to 1.
-    position, height: of the ankle over ground and above it, with rates and accelerations (swing).
-    yaw, pitch: of the foot; the rates and accelerations are the pitch's.
-    toes: extension of the toes and its rate.
+    Attributes:
+        task: Phase of the foot.
+        load: Allowed fraction of the largest contact forces, 0 to 1.
+        yaw: Yaw of the foot [rad].
+        position: Ankle over the level plane (SWING only).
+        height: Ankle in W [m] (SWING only).
+        pitch: Pitch of the foot [rad] (SWING and HEEL_OFF only).
+        toes: Extension of the toes and its rate [rad, rad/s].
     """
 
     task: FootTask
     load: float
     yaw: float
     position: PlanarMotion = PlanarMotion(0.0)
-    height: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    pitch: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    height: ScalarMotion = ScalarMotion()
+    pitch: ScalarMotion = ScalarMotion()
     toes: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class WalkingReference:
-    """What the body should do now.
+    """Reference for one control period.
 
-    phase, phase_time: what the walker is at, and for how long [s].
-    zmp: zero-moment point [m].
-    dcm, dcm_reference: measured and nominal [m], for records.
-    com_height: of the center of mass, with rate and acceleration [m, m/s, m/s2].
-    ground_height: of the ground under the support [m].
-    right, left: the feet.
-    pelvis_yaw, chest_yaw: [rad].
-    shoulder_flexion, elbow_flexion: angle and rate of right, then left [rad, rad/s].
-    foothold: where the swinging foot's ankle is going [m].
+    Attributes:
+        phase, phase_time: Phase of the walk and the time since it began; in single support, since touchdown [s].
+        zmp: Zero-moment point [m].
+        dcm, dcm_reference: Measured and nominal divergent component of motion [m], for records.
+        com_height: Center of mass in W [m].
+        ground_height: Ground under the support in W [m].
+        right, left: The feet.
+        pelvis_yaw, chest_yaw: [rad].
+        shoulder_flexion: Angle and rate, of the right and of the left shoulder [rad, rad/s].
+        foothold: Where the ankle of the swinging foot will be [m].
     """
 
     phase: Phase
@@ -108,7 +122,7 @@ class WalkingReference:
     zmp: complex
     dcm: complex
     dcm_reference: complex
-    com_height: tuple[float, float, float]
+    com_height: ScalarMotion
     ground_height: float
     right: FootReference
     left: FootReference
@@ -122,21 +136,16 @@ class WalkingReference:
         return self
 
     def foot(self, side: Side) -> FootReference:
-        """One foot."""
+        """The foot of a side."""
         return self.right if side == "Right" else self.left
 
 
-def other(side: Side) -> Side:
-    """The other side."""
-    return "Left" if side == "Right" else "Right"
-
-
 def com_acceleration(com: complex, zmp: complex, com_height: float, vertical_acceleration: float) -> complex:
-    """Acceleration of the center of mass over ground that puts the zero-moment point at `zmp` [m/s2].
+    """Horizontal acceleration of the center of mass that puts the zero-moment point at `zmp` [m/s2].
 
     Args:
-        com, zmp: over the level plane [m].
-        com_height: of the center of mass above the zero-moment point [m].
-        vertical_acceleration: of the center of mass [m/s2].
+        com, zmp: Points of the level plane [m].
+        com_height: Height of the center of mass above the zero-moment point [m].
+        vertical_acceleration: Acceleration of the center of mass [m/s2].
     """
     return (GRAVITY + vertical_acceleration) / com_height * (com - zmp)

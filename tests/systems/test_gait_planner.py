@@ -6,7 +6,7 @@ from pydrake.systems.analysis import Simulator
 
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
-from humanwalk.walking.step_planner import StepPlannerParameters
+from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.walking_reference import Phase
 
 PERIOD = 0.004

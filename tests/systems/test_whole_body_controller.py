@@ -7,7 +7,8 @@ from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
-from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.step_planner import StepPlanner
 
 PERIOD = 0.004
 

@@ -1,4 +1,4 @@
-"""The zero-moment point stays over the foot that carries, over its ball, or over both feet and between."""
+"""The zero-moment point is limited to the stance foot, to its front, or to both feet and the area between them."""
 
 import cmath
 
@@ -14,34 +14,34 @@ headings = st.floats(-3.0, 3.0)
 
 
 @given(points, points, headings, st.booleans())
-def test_it_stays_over_the_stance_foot(zmp, stance, heading, on_ball):
-    kept = (SUPPORT.supported(zmp, stance, heading, on_ball=on_ball) - stance) / cmath.exp(1j * heading)
+def test_it_stays_on_the_stance_foot(zmp, stance, heading, on_ball):
+    kept = (SUPPORT.clamp(zmp, stance, heading, on_ball=on_ball) - stance) / cmath.exp(1j * heading)
     assert (SUPPORT.ball if on_ball else -SUPPORT.back) - 1e-9 <= kept.real <= SUPPORT.front + 1e-9
     assert abs(kept.imag) <= SUPPORT.half_width + 1e-9
 
 
 @given(points, points, headings)
-def test_what_is_supported_stays_where_it_is(zmp, stance, heading):
-    once = SUPPORT.supported(zmp, stance, heading)
-    assert SUPPORT.supported(once, stance, heading) == pytest.approx(once, abs=1e-9)
+def test_a_point_within_the_base_of_support_is_not_moved(zmp, stance, heading):
+    once = SUPPORT.clamp(zmp, stance, heading)
+    assert SUPPORT.clamp(once, stance, heading) == pytest.approx(once, abs=1e-9)
 
 
-def test_between_two_feet_it_may_be_anywhere_on_the_way():
+def test_between_two_feet_it_may_be_anywhere_on_the_line_of_the_ankles():
     for share in (0.0, 0.3, 0.7, 1.0):
         zmp = share * (0.6 + 0.16j)
-        assert SUPPORT.supported(zmp, 0.6 + 0.16j, 0.0, other=0.0) == pytest.approx(zmp)
-    assert SUPPORT.supported(0.3 + 0.08j, 0.6 + 0.16j, 0.0) != pytest.approx(0.3 + 0.08j)
+        assert SUPPORT.clamp(zmp, 0.6 + 0.16j, 0.0, other=0.0) == pytest.approx(zmp)
+    assert SUPPORT.clamp(0.3 + 0.08j, 0.6 + 0.16j, 0.0) != pytest.approx(0.3 + 0.08j)
 
 
 @given(st.floats(-3.0, 3.0))
-def test_between_two_feet_an_error_sideways_counts_more_than_one_forward(heading):
+def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forward(heading):
     u = cmath.exp(1j * heading)
     stance, old = 0.5 * u, 0.16j * u
-    outward, back = (SUPPORT.supported(stance + error * u, stance, heading, old) for error in (-0.2 - 0.2j, -0.2))
-    # Behind and outward: only the front foot is outward.
+    outward, back = (SUPPORT.clamp(stance + error * u, stance, heading, old) for error in (-0.2 - 0.2j, -0.2))
+    # Only the stance foot corrects an outward error.
     assert abs(outward - stance) < SUPPORT.back + SUPPORT.half_width
     assert abs(back - stance) > SUPPORT.back + SUPPORT.half_width
 
 
-def test_the_pendulum_stands_before_the_ankle():
-    assert SUPPORT.middle_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.middle)
+def test_the_nominal_zero_moment_point_is_ahead_of_the_ankle():
+    assert SUPPORT.center_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.center)

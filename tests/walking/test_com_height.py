@@ -1,10 +1,10 @@
-"""The centre of mass vaults over each stance leg, lower between two steps the faster the walk."""
+"""The center of mass vaults over each stance leg; between two steps it is lower the faster the walk."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.com_height import ComHeight
+from humanwalk.walking.com_height import FREE_REACH, FREE_SPREAD, ComHeight
 
 HEIGHT = ComHeight()
 STEP = 0.52
@@ -21,13 +21,13 @@ def test_rates_are_derivatives(t, speed):
 
 @given(speeds)
 def test_the_top_is_as_high_at_every_speed(speed):
-    top = HEIGHT.arc(HEIGHT.lowest + 0.5 * STEP, STEP, speed)[0]
-    assert top == pytest.approx(HEIGHT.below_top(speed))
+    top = HEIGHT.arc(HEIGHT.delay + 0.5 * STEP, STEP, speed)[0]
+    assert top == pytest.approx(HEIGHT.arc_amplitude(speed))
 
 
 def test_it_is_lowest_soon_after_touchdown():
     heights = {t / 100: HEIGHT.arc(t / 100, STEP, 1.4)[0] for t in range(52)}
-    assert min(heights, key=heights.get) == pytest.approx(HEIGHT.lowest)
+    assert min(heights, key=heights.get) == pytest.approx(HEIGHT.delay)
 
 
 def test_in_standing_there_is_no_arc():
@@ -40,25 +40,27 @@ distances = st.floats(-0.5, 0.5)
 
 @given(distances, distances)
 def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x, y):
-    highest = HEIGHT.highest_for(complex(x, y), LEG, STANDING)
+    highest = HEIGHT.max_com_height_for_reach(complex(x, y), LEG, STANDING)
     assert highest <= STANDING
-    beyond = max(abs(x) - HEIGHT.free_reach, 0.0), max(abs(y) - HEIGHT.free_spread, 0.0)
+    beyond = max(abs(x) - FREE_REACH, 0.0), max(abs(y) - FREE_SPREAD, 0.0)
     hip = LEG + highest - STANDING
     assert hip**2 + beyond[0] ** 2 + beyond[1] ** 2 == pytest.approx(LEG**2)
 
 
 def test_an_ordinary_step_needs_no_lower_body():
-    assert HEIGHT.highest_for(0.37 + 0.08j, LEG, STANDING) == STANDING
+    assert HEIGHT.max_com_height_for_reach(0.37 + 0.08j, LEG, STANDING) == STANDING
 
 
-def test_it_goes_down_for_a_long_step_sooner_than_it_comes_up():
-    down, up = (HEIGHT.approach(0.95, 0.0, 0.90, 0.004, stretched)[1] for stretched in (True, False))
-    assert down < up < 0.0
+def test_it_is_lowered_for_a_long_step_faster_than_it_rises():
+    lowered, ordinary = HEIGHT.approach(0.95, 0.0, 0.97, 0.90), HEIGHT.approach(0.95, 0.0, 0.90, 1.0)
+    assert lowered < ordinary < 0.0
 
 
-def test_the_mean_height_comes_to_its_goal_without_overshoot():
-    height, rate = 0.97, 0.0
+@given(st.floats(0.8, 1.0), st.floats(0.8, 1.0), st.floats(0.8, 1.1))
+def test_the_mean_height_reaches_its_goal_within_the_limit_without_overshoot(start, goal, limit):
+    height, rate, end = start, 0.0, min(goal, limit)
     for _ in range(1000):
-        height, rate, _ = HEIGHT.approach(height, rate, 0.93, 0.004, False)
-        assert height >= 0.93 - 1e-6
-    assert height == pytest.approx(0.93, abs=1e-4)
+        rate += 0.004 * HEIGHT.approach(height, rate, goal, limit)
+        height += 0.004 * rate
+        assert min(start, end) - 1e-6 <= height <= max(start, end) + 1e-6
+    assert height == pytest.approx(end, abs=1e-4)

@@ -1,4 +1,4 @@
-"""A foot rolls over its heel when it lands and over its ball when it leaves, the faster the walk the farther."""
+"""A foot rolls over its heel after touchdown and over its ball before toe-off, farther in a faster walk."""
 
 import pytest
 from hypothesis import given
@@ -15,10 +15,10 @@ def over_ball(since, speed=1.2):
     return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, speed)
 
 
-def test_heels_rise_in_a_walk_that_is_fast_enough():
-    assert ROCKERS.rises(1.0)
-    assert not ROCKERS.rises(0.0)
-    assert not ROCKERS.rises(-1.0)
+def test_heels_rise_above_a_minimum_forward_speed():
+    assert ROCKERS.heel_rises(1.0)
+    assert not ROCKERS.heel_rises(0.0)
+    assert not ROCKERS.heel_rises(-1.0)
 
 
 def test_the_heel_rises_from_flat_to_its_pitch():
@@ -41,6 +41,6 @@ def test_toes_stay_on_the_ground_while_the_foot_pitches():
     assert reference.toes == reference.pitch[:2]
 
 
-def test_a_foot_that_landed_carries_at_once():
+def test_a_foot_is_loaded_from_touchdown_on():
     landed = ROCKERS.over_heel(0.3)
     assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)

@@ -10,11 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from humanwalk.body.limbs import other_side
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import height_at
 from humanwalk.walking.command import Command
-from humanwalk.walking.step_planner import StepPlanner, StepPlannerParameters
-from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase, other
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.step_planner import StepPlanner
+from humanwalk.walking.swing_foot import LANDING_DEPTH
+from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase
 
 PERIOD = 0.004
 ANKLE = 0.068
@@ -96,7 +99,7 @@ def test_phases_follow_each_other_and_sides_alternate():
                 stances.append(state.stance)
     assert len(stances) >= 6
     assert stances[0] == "Left"
-    assert all(later == other(earlier) for earlier, later in pairwise(stances))
+    assert all(later == other_side(earlier) for earlier, later in pairwise(stances))
 
 
 def test_the_foot_that_stands_is_never_the_one_that_swings():
@@ -123,7 +126,7 @@ def test_a_turn_turns_the_feet_and_the_walk():
 def test_it_stays_on_the_path_round_a_corner():
     command = lambda time: Command(0.4, 0.0, 0.4 if 3.0 < time < 6.9 else 0.0) if time > 0.2 else Command()  # noqa: E731
     for _, state, _, _ in pendulum_walk(planner(), command, 10.0):
-        assert abs(state.path.beside(state.middle, Command(0.4)).position - state.middle) < 0.03
+        assert abs(state.path.nearest(state.midpoint, Command(0.4)).position - state.midpoint) < 0.03
 
 
 def test_the_body_turns_without_a_jump():
@@ -136,7 +139,7 @@ def test_the_body_turns_without_a_jump():
 def test_a_pendulum_that_is_pushed_is_caught_by_steps(size, direction):
     push = (3.0, cmath.rect(size, direction))
     *_, (_, state, reference, body) = pendulum_walk(planner(), walk_at(0.5), 7.0, push)
-    assert abs(body.com - state.middle) < 0.6
+    assert abs(body.com - state.midpoint) < 0.6
     assert abs(reference.dcm - reference.dcm_reference) < 0.05
 
 
@@ -144,19 +147,19 @@ def test_a_push_forward_makes_the_next_step_longer():
     def foothold(push):
         for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.5), 4.2, push):
             if state.phase is Phase.SINGLE_SUPPORT:
-                last = reference.foothold - state.ankle(state.stance)
+                last = reference.foothold - state.stance_foot.position
         return last.real
 
     assert foothold((4.1, 0.1 + 0j)) > foothold(None)
 
 
-def test_legs_are_never_asked_to_cross_beside_each_other():
+def test_legs_are_never_asked_to_cross_beside_each_other_side():
     for push in (0.5j, -0.5j):
         for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.3), 5.0, (3.0, push)):
             if reference.phase is Phase.SINGLE_SUPPORT and reference.phase_time > 0.3:
                 outward = -1.0 if state.stance == "Left" else 1.0
-                place = (reference.foothold - state.ankle(state.stance)) / cmath.exp(1j * state.heading)
-                assert outward * place.imag >= PARAMETERS.placement.least_width(place.real) - 0.02
+                place = (reference.foothold - state.stance_foot.position) / cmath.exp(1j * state.heading)
+                assert outward * place.imag >= PARAMETERS.placement.min_step_width(place.real) - 0.02
 
 
 def test_a_wide_step_lowers_the_body():
@@ -183,7 +186,7 @@ def test_the_zero_moment_point_stays_over_the_stance_foot():
     support = PARAMETERS.support
     for _, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.0, (3.0, 0.3 + 0.2j)):
         if reference.phase is Phase.SINGLE_SUPPORT and state.phase is Phase.SINGLE_SUPPORT:
-            offset = reference.zmp - state.ankle(state.stance)
+            offset = reference.zmp - state.stance_foot.position
             assert -support.back - 1e-9 <= offset.real <= support.front + 1e-9
             assert abs(offset.imag) <= support.half_width + 1e-9
 
@@ -208,9 +211,9 @@ def test_durations_do_not_depend_on_the_control_period():
 def test_a_foot_leaves_flatter_from_a_short_step_than_from_an_ordinary_one():
     pitches = {}
     for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.5 + 0j)):
-        behind = reference.foot(other(state.stance))
+        behind = reference.foot(state.swing_side)
         if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and behind.task is FootTask.HEEL_OFF:
-            pitches[abs((state.right - state.left).real)] = behind.pitch[0]
+            pitches[abs((state.right.position - state.left.position).real)] = behind.pitch[0]
     shortest, longest = min(pitches), max(pitches)
     assert shortest < 0.5 * longest
     assert pitches[shortest] < 0.6 * pitches[longest]
@@ -219,9 +222,9 @@ def test_a_foot_leaves_flatter_from_a_short_step_than_from_an_ordinary_one():
 
 def test_who_goes_backward_sets_and_lifts_his_feet_flat():
     for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.2, push=(4.0, -1.2 + 0j)):
-        behind = (state.ankle(other(state.stance)) - state.ankle(state.stance)).real < 0.0
+        behind = (state.old_foot.position - state.stance_foot.position).real < 0.0
         if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and not behind:
-            assert reference.foot(other(state.stance)).task is FootTask.FLAT
+            assert reference.foot(state.swing_side).task is FootTask.FLAT
             break
     else:
         pytest.fail("no step backward")
@@ -236,10 +239,10 @@ def test_a_foot_whose_time_is_over_in_the_air_stands_where_it_comes_down():
     def stance_after(force):
         feet = {state.stance.lower(): foot(drifted, force)}
         later, _ = plan.update(state, replace(body, **feet), command(time))
-        return later.ankle(state.stance)
+        return later.foot(state.stance).position
 
     assert stance_after(0.0) == drifted
-    assert stance_after(500.0) == state.ankle(state.stance)
+    assert stance_after(500.0) == state.stance_foot.position
 
 
 def raised(body, height):
@@ -274,8 +277,8 @@ def test_a_swing_ends_at_the_height_of_its_foothold(rise):
     walk = list(pendulum_walk(planner(stairs), walk_at(0.5), 6.0))
     for (_, state, reference, _), (_, later, _, _) in pairwise(walk):
         if state.phase is Phase.SINGLE_SUPPORT and later.phase is Phase.DOUBLE_SUPPORT:
-            ankle = reference.foot(other(state.stance)).height[0]
-            goal = height_at(stairs, reference.foothold) + ANKLE - PARAMETERS.swing.landing_depth
+            ankle = reference.foot(state.swing_side).height[0]
+            goal = height_at(stairs, reference.foothold) + ANKLE - LANDING_DEPTH
             assert ankle == pytest.approx(goal, abs=0.01)
             swings += 1
     assert swings > 5
@@ -289,7 +292,7 @@ def test_the_ground_under_the_support_goes_from_foot_to_foot_without_a_jump(rise
     assert max(abs(later - earlier) for earlier, later in pairwise(grounds)) < 0.01
     for _, state, reference, _ in walk:
         if reference.phase is Phase.SINGLE_SUPPORT:
-            assert reference.ground_height == pytest.approx(height_at(stairs, state.ankle(state.stance)))
+            assert reference.ground_height == pytest.approx(height_at(stairs, state.stance_foot.position))
     assert abs(grounds[-1]) >= 4 * abs(rise)
 
 

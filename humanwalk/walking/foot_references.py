@@ -1,0 +1,95 @@
+"""References of the feet: the stance foot, the foot behind in double support, and the swinging foot."""
+
+from __future__ import annotations
+
+from humanwalk.numerics.scalars import wrapped
+from humanwalk.walking.command import Command
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.scalar_motion import blend
+from humanwalk.walking.walking_reference import FootReference, FootTask
+
+SHORT_STEP = 1.2
+"""A step is short if its length times this factor is less than speed times duration. Ordinary steps, which end early by
+contact, are not (docs/balance.md, "What a push teaches")."""
+
+TOES_STRAIGHT = 0.4
+"""Fraction of the swing after which the toes are straight: straightened at once they throw the foot up
+(docs/balance.md)."""
+
+
+def rollover_speed(state: PlannerState, step: complex, command: Command, parameters: StepPlannerParameters) -> float:
+    """Forward speed for the rollover of a foot [m/s]: the commanded one, or less if the step is short or backward.
+
+    A foot that is steep when it leaves the ground below the body catches the ground with its toes.
+
+    Args:
+        state: State of the planner.
+        step: Displacement from this foot to the other one [m].
+        command: The current command.
+        parameters: Parameters of the planner.
+    """
+    length = (step / state.direction).real
+    return min(command.forward, SHORT_STEP * length / parameters.timing.step)
+
+
+def stance_rollover_speed(
+    state: PlannerState, swing: Swing, command: Command, parameters: StepPlannerParameters
+) -> float | None:
+    """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
+    timing, rockers = parameters.timing, parameters.rockers
+    speed = rollover_speed(state, swing.foothold.position - state.stance_foot.position, command, parameters)
+    return speed if state.elapsed > timing.step - rockers.ball and rockers.heel_rises(speed) else None
+
+
+def stance_foot(
+    state: PlannerState, swing: Swing | None, command: Command, parameters: StepPlannerParameters
+) -> FootReference:
+    """Reference of the stance foot; `swing` is the swinging foot in single support."""
+    timing, rockers = parameters.timing, parameters.rockers
+    if state.steps > 0 and state.elapsed < rockers.heel:
+        return rockers.over_heel(state.heading)
+    speed = stance_rollover_speed(state, swing, command, parameters) if swing is not None else None
+    if speed is None:
+        return FootReference(FootTask.FLAT, 1.0, state.heading)
+    since = state.elapsed - (timing.step - rockers.ball)
+    return rockers.over_ball(since, timing.double_support, 1.0, state.heading, speed)
+
+
+def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
+    """Reference of the foot that leaves the ground at the end of double support."""
+    timing, rockers = parameters.timing, parameters.rockers
+    load = max(1.0 - state.elapsed / timing.double_support, 0.0)
+    speed = rollover_speed(state, state.stance_foot.position - state.old_foot.position, command, parameters)
+    if not rockers.heel_rises(speed):
+        return FootReference(FootTask.FLAT, load, state.old_heading)
+    return rockers.over_ball(rockers.ball + state.elapsed, timing.double_support, load, state.old_heading, speed)
+
+
+def swinging_foot(
+    state: PlannerState, swing: Swing, phase_rate: float, parameters: StepPlannerParameters
+) -> FootReference:
+    """Reference of the swinging foot.
+
+    Args:
+        state: State of the planner.
+        swing: The swinging foot.
+        phase_rate: Rate of the clock.
+        parameters: Parameters of the planner.
+    """
+    timing = parameters.timing
+    progress = timing.swing_progress(state.elapsed)
+    progress_rate = phase_rate / timing.single_support
+    height, pitch = swing.profile.at(progress)
+    rise = blend(0.0, swing.foothold.ground - state.old_foot.ground, progress, 1.0)
+    toes = blend(swing.start_toes, 0.0, progress, TOES_STRAIGHT).time_scaled(progress_rate)
+    turn = wrapped(state.heading + state.turn * timing.step - swing.start_yaw)
+    return FootReference(
+        FootTask.SWING,
+        load=0.0,
+        yaw=swing.start_yaw + blend(0.0, turn, progress, 1.0).value,
+        position=swing.motion,
+        height=height.plus(rise).time_scaled(progress_rate),
+        pitch=pitch.time_scaled(progress_rate),
+        toes=toes[:2],
+    )

@@ -1,0 +1,33 @@
+"""All parameters of the step planner."""
+
+from dataclasses import dataclass
+
+from humanwalk.quantity import quantity
+from humanwalk.walking.base_of_support import BaseOfSupport
+from humanwalk.walking.com_height import ComHeight
+from humanwalk.walking.commanded_path import PathFollowing
+from humanwalk.walking.counter_rotation import CounterRotation
+from humanwalk.walking.foot_placement import StepPlacement
+from humanwalk.walking.foot_rockers import FootRockers
+from humanwalk.walking.step_timing import StepTiming
+from humanwalk.walking.swing_foot import SwingParameters
+
+
+@dataclass(frozen=True)
+class StepPlannerParameters:
+    """How the walker steps and balances."""
+
+    timing: StepTiming = StepTiming()
+    placement: StepPlacement = StepPlacement()
+    support: BaseOfSupport = BaseOfSupport()
+    rockers: FootRockers = FootRockers()
+    swing: SwingParameters = SwingParameters()
+    height: ComHeight = ComHeight()
+    path: PathFollowing = PathFollowing()
+    rotation: CounterRotation = CounterRotation()
+
+    dcm_gain: float = quantity(1.0, "", 0.0, 5.0)
+    """Rate at which an error of the DCM decays, relative to the natural frequency, within the base of support."""
+
+    double_support_gain: float = quantity(2.0, "", 0.0, 20.0)
+    """The same in double support, where the base of support is larger."""

@@ -1,0 +1,140 @@
+"""The phases of the walk: when one ends, and the state in which the next one begins.
+
+STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
+"""
+
+from __future__ import annotations
+
+from humanwalk.body import Side
+from humanwalk.body.limbs import other_side
+from humanwalk.terrain.terrain import Terrain
+from humanwalk.walking.command import Command
+from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.foot_references import foot_behind
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
+from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
+from humanwalk.walking.swing_foot import PlanarMotion, SwingProfile
+from humanwalk.walking.walking_reference import BodyState, Phase
+
+STOP_SPEED = 0.05
+"""Commanded speed [m/s] and turn rate [rad/s] up to which a step is the last one."""
+
+
+class PhaseTransitions:
+    """Transitions between the phases.
+
+    Args:
+        parameters: Parameters of the planner.
+        ankle_height: Height of the ankle of a flat foot above the ground [m].
+        first_swing: The foot of the first step.
+        terrain: The ground.
+    """
+
+    def __init__(
+        self, parameters: StepPlannerParameters, ankle_height: float, first_swing: Side, terrain: Terrain
+    ) -> None:
+        self._parameters = parameters
+        self._ankle_height = ankle_height
+        self._first_swing = first_swing
+        self._terrain = terrain
+
+    def start(self, body: BodyState, heading: float) -> PlannerState:
+        """Standing on both feet, at the start of a path along a heading [rad]."""
+        right, left = (Foothold.on(self._terrain, foot.position) for foot in (body.right, body.left))
+        ground = 0.5 * (right.ground + left.ground)
+        return PlannerState(
+            phase=Phase.STAND,
+            elapsed=0.0,
+            stance=other_side(self._first_swing),
+            right=right,
+            left=left,
+            support_start=ground,
+            heading=heading,
+            old_heading=heading,
+            path=CommandedPath.begin(0.5 * (right.position + left.position), heading),
+            height=body.com_height - ground,
+        )
+
+    def advance(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+        """The state after the transition that is due, if any, over the feet as they are measured."""
+        return self._reanchor_airborne_stance(self._transition(state, body, command), body)
+
+    def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+        timing = self._parameters.timing
+        is_moving = max(abs(command.velocity), abs(command.turn)) > STOP_SPEED
+        if state.phase is Phase.STAND and is_moving:
+            ground = state.support_ground(timing).value
+            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, support_start=ground)
+        if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
+            # The weight shift takes the place of the first double support.
+            return self._lift_off(state._replace(elapsed=timing.double_support), body, command)
+        if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
+            return self._lift_off(state, body, command)
+        if state.phase is Phase.SINGLE_SUPPORT and timing.has_landed(state.elapsed, body.foot(state.swing_side).force):
+            return self._touch_down(state, body, command, is_moving)
+        return state
+
+    def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+        """The old foot begins to swing as it is measured."""
+        swing = self._parameters.swing
+        foot = body.foot(state.swing_side)
+        profile = SwingProfile.from_toe_off(
+            foot.height,
+            foot.height_rate,
+            foot.pitch,
+            foot.pitch_rate,
+            state.old_foot.ground + self._ankle_height,
+            swing.touchdown_pitch(command.forward),
+            self._parameters.timing.single_support,
+            swing,
+        )
+        acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
+        return state._replace(
+            phase=Phase.SINGLE_SUPPORT,
+            support_start=state.stance_foot.ground,
+            swing=Swing(
+                motion=PlanarMotion(foot.position, foot.velocity, acceleration),
+                profile=profile,
+                foothold=Foothold(foot.position, state.old_foot.ground),
+                start_yaw=foot.yaw,
+                start_toes=foot_behind(state, command, self._parameters).toes[0],
+            ),
+        )
+
+    def _touch_down(self, state: PlannerState, body: BodyState, command: Command, is_moving: bool) -> PlannerState:
+        """The swinging foot becomes the stance foot.
+
+        Both feet are set to their measured positions, so that errors do not accumulate. Heading and turn rate are those
+        of the path beside the new stance foot.
+        """
+        right, left = (Foothold.on(self._terrain, foot.position) for foot in (body.right, body.left))
+        midpoint = 0.5 * (right.position + left.position)
+        following = self._parameters.path
+        path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
+        beside_foot = path.nearest(body.foot(state.swing_side).position, command)
+        return PlannerState(
+            phase=Phase.DOUBLE_SUPPORT if is_moving else Phase.STAND,
+            elapsed=0.0,
+            stance=state.swing_side,
+            right=right,
+            left=left,
+            support_start=state.stance_foot.ground,
+            heading=beside_foot.heading,
+            old_heading=state.heading,
+            path=path,
+            turn=beside_foot.turn,
+            path_correction=following.correction(path, path.nearest(midpoint, command), midpoint, command),
+            height=state.height,
+            height_rate=state.height_rate,
+            steps=state.steps + 1 if is_moving else 0,
+        )
+
+    def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
+        """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""
+        foot = body.foot(state.stance)
+        is_landing = state.steps > 0 and 0.0 < state.elapsed <= self._parameters.rockers.heel
+        if foot.force >= TOUCHDOWN_FORCE or not is_landing:
+            return state
+        foothold = Foothold.on(self._terrain, foot.position)
+        return state._replace(right=foothold) if state.stance == "Right" else state._replace(left=foothold)

@@ -1,0 +1,140 @@
+"""The state of the step planner between two control periods.
+
+Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
+"""
+
+from __future__ import annotations
+
+import cmath
+from typing import NamedTuple
+
+from humanwalk.body import Side
+from humanwalk.body.limbs import other_side
+from humanwalk.terrain.terrain import Terrain, height_at
+from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.scalar_motion import ScalarMotion, blend
+from humanwalk.walking.step_timing import StepTiming
+from humanwalk.walking.swing_foot import PlanarMotion, SwingProfile
+from humanwalk.walking.walking_reference import Phase
+
+
+class Foothold(NamedTuple):
+    """Where a foot stands: its ankle over the level plane, and the height of the ground below it [m]."""
+
+    position: complex
+    ground: float
+
+    @staticmethod
+    def on(terrain: Terrain, position: complex) -> Foothold:
+        """The foothold at a position."""
+        return Foothold(position, height_at(terrain, position))
+
+
+class Swing(NamedTuple):
+    """The swinging foot.
+
+    Attributes:
+        motion: Ankle over the level plane.
+        profile: Height and pitch for a foothold at the height of the ground at lift-off.
+        foothold: Where the foot will stand.
+        start_yaw, start_toes: Yaw of the foot and extension of the toes at lift-off [rad].
+    """
+
+    motion: PlanarMotion
+    profile: SwingProfile
+    foothold: Foothold
+    start_yaw: float
+    start_toes: float
+
+
+class PlannerState(NamedTuple):
+    """The state of the step planner.
+
+    Attributes:
+        phase: Phase of the walk.
+        elapsed: Time in the phase; in double and single support, on the clock of the step [s].
+        stance: The stance foot of the step.
+        right, left: Where the feet stand; the swinging foot, where it stood.
+        support_start: Height of the ground under the support at the start of the phase [m].
+        heading, old_heading: Headings of this step and of the one before [rad].
+        path: The commanded path.
+        height, height_rate: Mean height of the center of mass above the ground under the support [m, m/s].
+        turn: Turn rate of the path beside the stance foot [rad/s].
+        path_correction: Velocity of this step in addition to the commanded one [m/s].
+        steps: Number of steps since standing.
+        swing: The swinging foot in single support, else None.
+    """
+
+    phase: Phase
+    elapsed: float
+    stance: Side
+    right: Foothold
+    left: Foothold
+    support_start: float
+    heading: float
+    old_heading: float
+    path: CommandedPath
+    height: float
+    height_rate: float = 0.0
+    turn: float = 0.0
+    path_correction: complex = 0.0
+    steps: int = 0
+    swing: Swing | None = None
+
+    def __deepcopy__(self, memo: object) -> PlannerState:
+        """Return itself: Drake copies abstract values often, and the state is immutable."""
+        return self
+
+    def foot(self, side: Side) -> Foothold:
+        """Where a foot stands or stood."""
+        return self.right if side == "Right" else self.left
+
+    @property
+    def swing_side(self) -> Side:
+        """The foot that swings in this step."""
+        return other_side(self.stance)
+
+    @property
+    def stance_foot(self) -> Foothold:
+        """Where the stance foot stands."""
+        return self.foot(self.stance)
+
+    @property
+    def old_foot(self) -> Foothold:
+        """Where the other foot stands, or stood before its swing."""
+        return self.foot(self.swing_side)
+
+    @property
+    def midpoint(self) -> complex:
+        """The point between the ankles."""
+        return 0.5 * (self.right.position + self.left.position)
+
+    @property
+    def is_stepping(self) -> bool:
+        """Whether the walker is in double or single support of a step."""
+        return self.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+
+    @property
+    def direction(self) -> complex:
+        """Unit vector along the heading."""
+        return cmath.exp(1j * self.heading)
+
+    def local(self, point: complex) -> complex:
+        """A point in the frame of the step: origin at the stance ankle, x along the heading."""
+        return (point - self.stance_foot.position) / self.direction
+
+    def world(self, point: complex) -> complex:
+        """A point of the frame of the step in W."""
+        return self.stance_foot.position + self.direction * point
+
+    def support_ground(self, timing: StepTiming) -> ScalarMotion:
+        """Height of the ground under the support [m].
+
+        It moves from its value at the start of the phase to the ground under the stance foot, or to the mean of both
+        feet in standing.
+        """
+        goal = self.stance_foot.ground
+        if self.phase is Phase.STAND:
+            goal = 0.5 * (self.right.ground + self.left.ground)
+        duration = timing.weight_shift if self.phase is Phase.WEIGHT_SHIFT else timing.double_support
+        return blend(self.support_start, goal, self.elapsed, duration)

@@ -1,0 +1,64 @@
+"""The clock of a step: double support, then single support; it runs faster for a foothold that is out of reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from humanwalk.quantity import quantity
+
+TOUCHDOWN_FORCE = 60.0
+"""Vertical force above which a foot counts as loaded [N]: a tenth of the weight of the reference body."""
+
+
+@dataclass(frozen=True)
+class StepTiming:
+    """Durations of the phases, and limits of the clock's rate."""
+
+    step: float = quantity(0.53, "s", 0.3, 1.2)
+    """From touchdown to touchdown of the other foot."""
+
+    double_support: float = quantity(0.10, "s", 0.04, 0.4)
+    """First part of the step."""
+
+    weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
+    """From quiet standing onto the first stance foot."""
+
+    early_touchdown: float = quantity(0.85, "", 0.3, 1.0)
+    """Fraction of single support after which contact ends the step."""
+
+    phase_rate_gain: float = quantity(15.0, "1/m", 0.0, 100.0)
+    """Increase of the clock's rate per distance by which the desired foothold is out of reach."""
+
+    phase_rate_limit: float = quantity(0.8, "", 0.0, 3.0)
+    """Largest increase of the rate in single support."""
+
+    double_support_rate_limit: float = quantity(3.0, "", 0.0, 10.0)
+    """Largest increase of the rate in double support, where a foothold across the stance foot calls for it."""
+
+    @property
+    def single_support(self) -> float:
+        """Second part of the step [s]."""
+        return self.step - self.double_support
+
+    def swing_progress(self, elapsed: float) -> float:
+        """Elapsed fraction of single support at a time since touchdown [s]; negative in double support."""
+        return (elapsed - self.double_support) / self.single_support
+
+    def has_landed(self, elapsed: float, force: float) -> bool:
+        """Whether the swing ends, by time or by early contact.
+
+        Args:
+            elapsed: Time since the last touchdown [s].
+            force: Vertical ground reaction force on the swinging foot [N].
+        """
+        progress = self.swing_progress(elapsed)
+        return progress >= 1.0 or (progress > self.early_touchdown and force > TOUCHDOWN_FORCE)
+
+    def phase_rate(self, excess: float, limit: float) -> float:
+        """Rate of the clock, 1 nominally.
+
+        Args:
+            excess: Distance by which the desired foothold is out of reach [m].
+            limit: Largest increase of the rate.
+        """
+        return 1.0 + min(self.phase_rate_gain * excess, limit)

@@ -1,0 +1,42 @@
+"""The desired periodic gait, and the nominal zero-moment point from now to the end of the step."""
+
+from __future__ import annotations
+
+import cmath
+
+from humanwalk.walking.command import Command
+from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.walking_reference import Phase
+
+
+def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> PeriodicGait:
+    """The periodic gait with the commanded velocity and the velocity towards the path."""
+    timing, placement = parameters.timing, parameters.placement
+    move = (command.velocity + state.path_correction) * timing.step
+    turn = state.turn * timing.step
+    # In a sideways walk, every other step is narrower by the sideways displacement.
+    width = max(placement.step_width, placement.min_width + abs(move.imag))
+    half = 0.5j * width * (1.0 + cmath.exp(1j * turn))
+    along = move * cmath.exp(0.5j * turn)
+    return PeriodicGait(
+        displacement=PerStance(left=along - half, right=along + half),
+        turn=turn,
+        # When walking backward, the feet land flat: the zero-moment point does not roll.
+        roll=parameters.support.roll * complex(max(command.forward, 0.0), command.sideways),
+        double_support=timing.double_support,
+        single_support=timing.single_support,
+    )
+
+
+def remaining_zmp(state: PlannerState, gait: PeriodicGait, parameters: StepPlannerParameters) -> tuple[ZmpSegment, ...]:
+    """The nominal zero-moment point to the end of the step, over the feet as they stand [m]."""
+    timing, support = parameters.timing, parameters.support
+    stance = support.center_of(state.stance_foot.position, state.heading)
+    single = ZmpSegment(stance, stance + gait.roll * state.direction, timing.single_support)
+    if state.phase is Phase.SINGLE_SUPPORT:
+        return (single.remainder(state.elapsed - timing.double_support),)
+    old = support.center_of(state.old_foot.position, state.old_heading)
+    old_end = old + gait.roll * cmath.exp(1j * state.old_heading)
+    return (ZmpSegment(old_end, stance, timing.double_support).remainder(state.elapsed), single)

@@ -1,0 +1,24 @@
+"""The lead of the left foot over the right one is measured along the heading."""
+
+import cmath
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.walking.counter_rotation import foot_lead
+from humanwalk.walking.walking_reference import BodyState, FootState
+
+points = st.builds(complex, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+
+
+def foot(position, velocity=0j):
+    return FootState(position, velocity, height=0.07, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=350.0)
+
+
+@given(points, points, st.floats(-3.0, 3.0))
+def test_the_lead_does_not_depend_on_position_and_orientation_in_the_world(offset, velocity, heading):
+    u = cmath.exp(1j * heading)
+    right, left = foot(offset), foot(offset + (0.3 + 0.1j) * u, velocity * u)
+    body = BodyState(time=0.0, com=offset, com_velocity=0j, com_height=0.97, right=right, left=left)
+    assert foot_lead(body, heading) == pytest.approx((0.3, velocity.real), abs=1e-9)
