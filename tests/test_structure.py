@@ -34,7 +34,7 @@ PENDING: dict[str, dict[str, str]] = {
         "founder": "choices/balanced.py choices/start.py",
         "h3": "gait/arm_swing.py systems/inverse_kinematics_solver.py",
         "h5": "measures/human_likeness.py run/monitor.py",
-        "h6": "view/plots/joints.py view/plots/thesis_figures.py view/replay.py",
+        "h6": "view/plots/joints.py view/plots/thesis_figures.py",
     },
     "size": {
         "founder": "scenario.py",

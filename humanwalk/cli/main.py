@@ -122,7 +122,7 @@ def replay(
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Serve the replay of a run on this machine only, and open it in the browser."""
-    from humanwalk.view.replay import serve_replay
+    from humanwalk.view.serve import serve_replay
 
     serve_replay(run, open_browser=browser, console=console)
 

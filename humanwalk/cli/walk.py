@@ -51,7 +51,7 @@ def walk_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
-    meshcat = make_meshcat() if live or replay else None
+    meshcat = make_meshcat(live=live) if live or replay else None
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
     path, made = new_run_folder(output, name)
@@ -68,9 +68,10 @@ def walk_and_write(
         raise
     if not run.summary["physics"]:
         console.print("no physics: joints and pelvis are where the recording has them; no forces, torques or balance")
+    duration = run.summary["duration_s"]
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
-            write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}"))
+            write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}, {duration:g} s"))
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))

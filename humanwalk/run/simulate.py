@@ -13,12 +13,13 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.measures.signals import Recorder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import Scenario
-from humanwalk.view.replay import add_visualizer
+from humanwalk.terrain import Plane
 
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
@@ -71,6 +72,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
             walker.GetOutputPort("query_object"),
             meshcat,
             scenario.recording.frame_rate,
+            Plane(),
             walker.GetOutputPort("foot_forces") if walker.HasOutputPort("foot_forces") else None,
         )
     diagram = builder.Build()

@@ -1,4 +1,9 @@
-"""A replay page in a headless browser, which shows any instant of the walk from any side, one still at a time."""
+"""A replay page in a headless browser without network, which draws any instant of the walk from any side.
+
+What is opened is our own page with the recording of the given one, see `safe_page`. Should a script run in it anyway,
+Chromium has no name resolution, no proxy that answers and no direct connection. Its sandbox is on, except for root,
+as whom Chromium does not start with it.
+"""
 
 import base64
 import os
@@ -10,10 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from humanwalk.body.skeleton import Vector3
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
+from humanwalk.view.replay import content_policy, safe_page
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 CHROMIUM = "CHROMIUM"
 """Environment variable that names the browser, before the names that are looked for."""
@@ -27,13 +33,24 @@ FLAGS = (
     # Renders on the processor: the same picture on every machine, and no other flags give WebGL without a display.
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    # No network: neither names nor addresses resolve, and all else goes to a proxy that does not exist.
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--proxy-server=http://127.0.0.1:9",
+    "--proxy-bypass-list=<-loopback>",
+    "--webrtc-ip-handling-policy=disable_non_proxied_udp",
     "--disable-background-networking",
     "--hide-scrollbars",
     "--force-color-profile=srgb",
 )
 
+PAGE_URL = "http://replay.invalid/"
+"""Address under which the page is handed to the browser; no request is sent."""
+
+DURATION_TOLERANCE = 1e-3
+"""Excess of the replay's duration over the run's that is rounding [s]."""
+
 START_TIMEOUT_S = 90.0
-"""Until the page must have its walk: software WebGL takes its time on a busy machine."""
+"""Time to load the page and its recording; software WebGL is slow on a busy machine."""
 STILL_TIMEOUT_S = 60.0
 
 JPEG_QUALITY = 0.93
@@ -42,11 +59,11 @@ Format = Literal["jpeg", "png"]
 
 HAS_WEBGL = "() => document.createElement('canvas').getContext('webgl2') !== null"
 
-LOADED = "() => typeof viewer !== 'undefined' && viewer.animator.duration > 0"
+LOADED_DURATION = "() => String(typeof viewer === 'undefined' ? 0 : viewer.animator.duration)"
 
-# Meshcat's own loop stops: nothing moves or is drawn but when a still is taken, and the canvas leaves the page, which
-# would be drawn once more around it. Software WebGL pays for every triangle, highlight and soft shadow: materials are
-# dull, shadows hard, on a map just around the walker, and what is small on the picture gets fewer triangles. y is up
+# Meshcat's own loop stops: nothing moves or is drawn except when a still is taken, and the canvas is removed from the
+# page, which would be composited once more around it. Software WebGL pays for every triangle, highlight and soft
+# shadow: materials are diffuse, shadows hard and only near the walker, and small objects have fewer triangles. y is up
 # in three.js.
 HOLD = """() => {
     viewer.animator.pause();
@@ -56,17 +73,17 @@ HOLD = """() => {
     viewer.renderer.domElement.remove();
     viewer.renderer.shadowMap.type = 0;
     const round = [8, 12, 16].map(n => new THREE.SphereGeometry(1, n, Math.round(0.75 * n)));
-    const pixelsPerMetre = innerHeight / 2.4;
+    const pixelsPerMeter = innerHeight / 2.4;
     viewer.scene.updateMatrixWorld(true);
     viewer.scene.traverse(object => {
         if (object.isMesh) {
-            const {color, map, transparent, opacity, side} = object.material;
-            object.material = new THREE.MeshLambertMaterial({color, map, transparent, opacity, side});
+            const {color, map, transparent, opacity, side, depthTest} = object.material;
+            object.material = new THREE.MeshLambertMaterial({color, map, transparent, opacity, side, depthTest});
         }
         if (object.isMesh && object.castShadow) {
             object.geometry.computeBoundingSphere();
             const radius = object.geometry.boundingSphere.radius * object.matrixWorld.getMaxScaleOnAxis();
-            const size = radius * pixelsPerMetre;
+            const size = radius * pixelsPerMeter;
             object.castShadow = size > 12;
             const coarse = size < 5 ? 0 : size < 12 ? 1 : size < 50 ? 2 : 3;
             const {type, parameters: {radius: r, height: h}} = object.geometry;
@@ -89,7 +106,7 @@ HOLD = """() => {
         viewer.controls.target.set(...up(target));
         viewer.render();
     };
-    return viewer.animator.duration;
+    return true;
 }"""
 
 STILL = """([time, position, target, type, quality]) => {
@@ -97,7 +114,7 @@ STILL = """([time, position, target, type, quality]) => {
     return viewer.renderer.domElement.toDataURL(type, quality).split(",")[1];
 }"""
 
-# Relative to Meshcat's moved scene, that is in W; three.js keeps matrices by columns.
+# Relative to Meshcat's moved scene, which is W; three.js stores matrices by columns.
 POSE = """([time, body]) => {
     humanwalkShow(time, [3, -3, 1], [0, 0, 1]);
     const scene = viewer.scene_tree.find(["drake"]).object;
@@ -108,7 +125,7 @@ POSE = """([time, body]) => {
 
 @dataclass(frozen=True)
 class Camera:
-    """Where one looks from, in W moved along with the pelvis: x counts from the pelvis, y and z from the ground's."""
+    """Camera in W translated to the pelvis: x counts from the pelvis, y from W's, z from the ground there [m]."""
 
     position: Vector3
     target: Vector3
@@ -116,11 +133,11 @@ class Camera:
 
 @dataclass(frozen=True)
 class Stage:
-    """A replay page that is held still in a browser.
+    """A replay page in a browser, paused.
 
     Attributes:
-        duration: of the replay [s].
-        complaints: what the page logged as warning or error, and what it asked of another host; empty if all is well.
+        duration: Duration of the replay [s].
+        complaints: Warnings and errors that the page logged, and requests that it made; empty if all is well.
     """
 
     duration: float
@@ -131,110 +148,143 @@ class Stage:
         """The picture of one instant [s], as the bytes of a JPEG or PNG file.
 
         Raises:
-            ParameterError: the browser ended or hangs.
+            ParameterError: The browser has crashed or hangs.
         """
         from playwright.sync_api import Error
 
         arguments = [time, list(camera.position), list(camera.target), f"image/{format}", JPEG_QUALITY]
         try:
-            return base64.b64decode(self._page.evaluate(STILL, arguments))
+            return base64.b64decode(_evaluate(self._page, STILL, arguments, STILL_TIMEOUT_S))
         except Error as error:
-            raise ParameterError(f"browser: it ended while the frame at {time:g} s was drawn: {_line(error)}") from None
+            raise ParameterError(f"browser: failed while drawing the frame at {time:g} s: {_line(error)}") from None
 
     def pose(self, time: float, *body: str) -> list[float]:
-        """X_WB of a body as the page shows it: 16 numbers of a 4x4 matrix, by columns.
+        """X_WB of a body as shown by the page: 16 numbers of a 4x4 matrix, by columns.
 
         Args:
-            time: instant [s].
-            body: name, or names down from the human's to the geometry's.
+            time: Instant [s].
+            body: Name, or names from the human's down to the geometry's.
         """
-        elements: list[float] = self._page.evaluate(POSE, [time, list(body)])
+        elements: list[float] = _evaluate(self._page, POSE, [time, list(body)], STILL_TIMEOUT_S)
         return elements
 
 
 @contextmanager
-def open_stage(page: Path, width: int, height: int) -> Iterator[Stage]:
-    """Open a replay page in a headless browser; it is closed at the end of the block.
+def open_stage(page: Path, width: int, height: int, max_duration: float) -> Iterator[Stage]:
+    """Open the recording of a replay page in a headless browser, which is closed at the end of the block.
 
     Args:
-        page: the HTML file.
-        width, height: of the picture in pixels.
+        page: The HTML file.
+        width, height: Size of the picture in pixels.
+        max_duration: Duration of the run [s]; a longer recording is refused.
 
     Raises:
-        ParameterError: there is no Playwright, no browser or no WebGL, with what to install.
+        ParameterError: No Playwright, browser or WebGL, with what to install; or a page that cannot be shown.
+    """
+    text = safe_page(page)
+    with open_browser() as browser:
+        yield _hold(browser, text, printable(page), width, height, max_duration)
+
+
+@contextmanager
+def open_browser() -> Iterator["Browser"]:
+    """Start a headless Chromium that renders on the processor and has no network.
+
+    Raises:
+        ParameterError: No Playwright or no browser, with what to install.
     """
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
         raise ParameterError(missing_extra("playwright")) from None
-    # As root, as in most containers, Chromium refuses its sandbox.
-    flags = [*FLAGS, "--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else [*FLAGS]
     with sync_playwright() as playwright:
         executable = find_browser()
         try:
-            # Ctrl-C is for us to see first: we close the browser when the frame is done.
-            browser = playwright.chromium.launch(executable_path=executable, args=flags, handle_sigint=False)
+            # Ctrl-C is handled here, between two frames.
+            browser = playwright.chromium.launch(
+                executable_path=executable, args=FLAGS, handle_sigint=False, chromium_sandbox=has_sandbox()
+            )
         except Error as error:
             _no_browser(executable, error)
         try:
-            yield _hold(browser, page, width, height)
+            yield browser
         finally:
-            # Playwright's process may be gone with the terminal.
+            # Playwright's process may have ended with the terminal.
             with suppress(Error):
                 browser.close()
+
+
+def has_sandbox() -> bool:
+    """Whether Chromium runs in its sandbox: always, except as root, as whom it does not start with one."""
+    return os.geteuid() != 0
 
 
 def find_browser() -> str | None:
     """The browser to run: $CHROMIUM, else a known name or place, else None for Playwright's own.
 
     Raises:
-        ParameterError: $CHROMIUM names nothing that runs.
+        ParameterError: $CHROMIUM is not executable.
     """
     if named := os.environ.get(CHROMIUM):
         found = shutil.which(named)
         if found is None:
             raise ParameterError(
-                f"${CHROMIUM}: {named} is no program; allowed: the path of a Chromium or Chrome; mend or unset it"
+                f"${CHROMIUM}: {printable(named)} is not a program; allowed: the path of a Chromium or Chrome; "
+                "change or unset it"
             )
         return found
     return next(filter(None, map(shutil.which, (*BROWSER_NAMES, *MACOS_BROWSERS))), None)
 
 
 def missing_extra(package: str) -> str:
-    """What to say when a package of the extra `video` is not there."""
-    return f"video: the Python package {package} is not installed; install it: pip install 'humanwalk[video]'"
+    """Message for a missing package of the extra `video`."""
+    return f"video: the Python package {package} is not installed; in the checkout run: pip install -e '.[video]'"
 
 
-def _hold(browser: Any, page: Path, width: int, height: int) -> Stage:
-    from playwright.sync_api import TimeoutError as BrowserTimeout
+def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max_duration: float) -> Stage:
+    from playwright.sync_api import Error
 
     tab = browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=1)
-    tab.set_default_timeout(1000.0 * STILL_TIMEOUT_S)
     complaints: list[str] = []
 
-    def ask(route: Any) -> None:
-        # What the page holds itself never comes here.
-        if route.request.url.startswith("file:"):
-            route.continue_()
+    def answer(route: Any) -> None:
+        if route.request.url == PAGE_URL:
+            policy = {"Content-Security-Policy": content_policy()}
+            route.fulfill(body=text, content_type="text/html; charset=utf-8", headers=policy)
         else:
-            complaints.append(f"asked for {route.request.url}")
+            complaints.append(f"requested {route.request.url}")
             route.abort()
 
-    def listen(message: Any) -> None:
+    def log(message: Any) -> None:
         if message.type in ("error", "warning"):
             complaints.append(f"{message.type}: {message.text}")
 
-    tab.route("**/*", ask)
+    tab.route("**/*", answer)
     tab.on("pageerror", lambda error: complaints.append(f"error: {error}"))
-    tab.on("console", listen)
+    tab.on("console", log)
     if not tab.evaluate(HAS_WEBGL):
-        _no_webgl("it has none")
-    tab.goto(page.resolve().as_uri(), wait_until="commit")
+        raise ParameterError(
+            "browser: no WebGL; allowed: a Chromium with SwiftShader (Debian: apt-get install chromium; anywhere: "
+            f"playwright install chromium); name it in ${CHROMIUM}"
+        )
     try:
-        tab.wait_for_function(LOADED, timeout=1000.0 * START_TIMEOUT_S)
-    except BrowserTimeout:
-        _no_webgl(f"the page shows no walk after {START_TIMEOUT_S:g} s" + "".join(f"; {text}" for text in complaints))
-    return Stage(float(tab.evaluate(HOLD)), complaints, tab)
+        tab.goto(PAGE_URL, timeout=1000.0 * START_TIMEOUT_S)
+        duration = float(_evaluate(tab, LOADED_DURATION, None, START_TIMEOUT_S))
+    except Error as error:
+        raise ParameterError(f"{name}: does not load: {_line(error)}; allowed: a page of `humanwalk walk`") from None
+    if not 0.0 < duration <= max_duration + DURATION_TOLERANCE:
+        raise ParameterError(
+            f"{name}: a recording of {duration:g} s{''.join(f'; {printable(text)}' for text in complaints[:3])}; "
+            f"allowed: up to {max_duration:g} s, which the run lasted; walk again"
+        )
+    _evaluate(tab, HOLD, None, STILL_TIMEOUT_S)
+    return Stage(duration, complaints, tab)
+
+
+def _evaluate(tab: "Page", function: str, argument: Any, timeout_s: float) -> Any:
+    """Result of a JavaScript function that returns no false value; unlike `Page.evaluate`, with a timeout."""
+    result = tab.wait_for_function(function, arg=argument, polling=100.0, timeout=1000.0 * timeout_s)
+    return result.json_value()
 
 
 def _no_browser(executable: str | None, error: Exception) -> NoReturn:
@@ -246,13 +296,6 @@ def _no_browser(executable: str | None, error: Exception) -> NoReturn:
         "browser: no Chromium or Chrome found; install one (Debian: apt-get install chromium; anywhere: "
         f"playwright install chromium), or name it in ${CHROMIUM}"
     ) from None
-
-
-def _no_webgl(what: str) -> NoReturn:
-    raise ParameterError(
-        f"browser: no WebGL: {what}; use a Chromium with SwiftShader (Debian: apt-get install chromium; anywhere: "
-        f"playwright install chromium) and name it in ${CHROMIUM}"
-    )
 
 
 def _line(error: Exception) -> str:

@@ -157,7 +157,8 @@ def record_video(
         ParameterError: no run or replay, an unknown format, nothing to record with, or no room; nothing is written.
         KeyboardInterrupt: Ctrl-C; nothing is written.
     """
-    page = Run.open(run).replay
+    opened = Run.open(run)
+    page, duration = opened.replay, opened.summary["duration_s"]
     form = output.suffix.lower()
     if form not in FORMATS:
         raise ParameterError(f"-o {output}: unknown video format; allowed: {', '.join(FORMATS)}; name it walk.mp4")
@@ -166,7 +167,10 @@ def record_video(
     make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
         frames = Path(folder) / "frames.mjpeg"
-        with open_stage(page, parameters.width, parameters.height) as stage, frames.open("wb") as file:
+        with (
+            open_stage(page, parameters.width, parameters.height, duration) as stage,
+            frames.open("wb") as file,
+        ):
             times = parameters.times(stage.duration)
             for done, time in enumerate(times, start=1):
                 file.write(stage.still(time, camera(parameters.view, time)))
@@ -194,7 +198,8 @@ def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, 
     """
     from PIL import Image, ImageDraw, ImageFont
 
-    page = Run.open(run).replay
+    opened = Run.open(run)
+    page, duration = opened.replay, opened.summary["duration_s"]
     if output.suffix.lower() != ".png":
         raise ParameterError(f"-o {output}: unknown picture format; allowed: .png; name it strip.png")
     check_picture(width, height, view)
@@ -204,7 +209,7 @@ def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, 
     strip = Image.new("RGB", (len(times) * (width + STRIP_GAP) - STRIP_GAP, height + STRIP_LABEL), "white")
     draw = ImageDraw.Draw(strip)
     font = ImageFont.load_default(18)
-    with open_stage(page, width, height) as stage:
+    with open_stage(page, width, height, duration) as stage:
         for time in times:
             require_in_range("--times", time, "s", 0.0, stage.duration)
         for place, time in enumerate(times):

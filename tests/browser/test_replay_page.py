@@ -1,3 +1,5 @@
+import base64
+import hashlib
 import json
 import re
 import shutil
@@ -71,9 +73,12 @@ def probe(outcome_and_page, tmp_path_factory):
     folder = tmp_path_factory.mktemp("replay")
     look = LOOK.replace("TIMES", json.dumps(TIMES))
     before, body_end, after = page.rpartition("</body>")
-    (folder / "page.html").write_text(
-        before.replace("<head>", "<head>" + WATCH, 1) + look + body_end + after, encoding="utf-8"
-    )
+    page = before.replace("<head>", "<head>" + WATCH, 1) + look + body_end + after
+    # The policy permits only the scripts of the page; this one is the test's.
+    (script,) = re.findall(r"<script>(.*?)</script>", look, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    page = page.replace("script-src ", f"script-src 'sha256-{digest}' ", 1)
+    (folder / "page.html").write_text(page, encoding="utf-8")
     result = subprocess.run(
         [
             CHROMIUM,

@@ -17,7 +17,7 @@ FRAME_TIMES = (0.125, 0.375)
 
 @pytest.fixture(scope="module")
 def stage(short_run):
-    with open_stage(short_run.replay, WIDTH, HEIGHT) as stage:
+    with open_stage(short_run.replay, WIDTH, HEIGHT, short_run.summary["duration_s"]) as stage:
         yield stage
 
 
@@ -55,3 +55,13 @@ def test_every_view_shows_the_walker_before_the_sky(stage, tmp_path, view):
     assert picture.shape == (HEIGHT, WIDTH, 3)
     middle = picture[HEIGHT // 4 : -HEIGHT // 4, WIDTH // 2 - 6 : WIDTH // 2 + 6]
     assert np.abs(middle - sky_only[HEIGHT // 4 : -HEIGHT // 4, WIDTH // 2 - 6 : WIDTH // 2 + 6]).mean() > 20.0
+
+
+@pytest.mark.parametrize(("time", "loaded"), [(0.2, True), (0.4, False)])
+def test_force_arrows_are_drawn_over_the_body(stage, tmp_path, time, loaded):
+    """As in the page: the line of action of the force runs inside the leg. At 0.4 s no foot is loaded."""
+    (tmp_path / "still.png").write_bytes(stage.still(time, camera("side", time), "png"))
+    with Image.open(tmp_path / "still.png") as still:
+        red, green, blue = np.moveaxis(np.asarray(still.convert("RGB"), dtype=float), -1, 0)
+    arrow = (red > 120) & (green < 0.35 * red) & (blue < 0.35 * red)
+    assert bool(arrow.sum() > 10) is loaded

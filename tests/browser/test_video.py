@@ -7,7 +7,6 @@ import pytest
 from PIL import Image
 
 from humanwalk.quantity import ParameterError
-from humanwalk.view.browser import open_stage
 from humanwalk.view.video import VideoParameters, find_ffmpeg, record_video, write_snapshot
 
 pytestmark = pytest.mark.browser
@@ -25,17 +24,6 @@ def frame_hashes(video):
         check=True,
     )
     return [line.split(",")[-1].strip() for line in result.stdout.splitlines() if not line.startswith("#")]
-
-
-def test_a_page_that_asks_another_host_is_noticed_and_refused(short_run, tmp_path):
-    page = tmp_path / "page.html"
-    text = short_run.replay.read_text(encoding="utf-8")
-    policy_begin = text.index('<meta http-equiv="Content-Security-Policy"')
-    policy_end = text.index(">", policy_begin) + 1
-    foreign = '<img src="https://example.invalid/spy.png">'
-    page.write_text(text[:policy_begin] + text[policy_end:].replace("<body>", "<body>" + foreign, 1), encoding="utf-8")
-    with open_stage(page, WIDTH, HEIGHT) as stage:
-        assert any("https://example.invalid/spy.png" in complaint for complaint in stage.complaints)
 
 
 def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run, tmp_path):

@@ -319,8 +319,9 @@ LOOPBACK = {"0100007F", "00000000000000000000000001000000"}
 @pytest.mark.skipif(not os.path.exists("/proc/net/tcp"), reason="needs Linux' list of sockets")
 def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
     code = (
-        "import threading; from humanwalk.view.replay import make_meshcat, replay_server;"
-        "m = make_meshcat(); s = replay_server(b''); threading.Thread(target=s.serve_forever, daemon=True).start();"
+        "import threading; from humanwalk.view.replay import make_meshcat;"
+        "from humanwalk.view.serve import replay_server; m = make_meshcat(live=True); s = replay_server(b'');"
+        "threading.Thread(target=s.serve_forever, daemon=True).start();"
         "print('ready', flush=True); input()"
     )
     process = subprocess.Popen(

@@ -1,5 +1,6 @@
 import _thread
 import base64
+import hashlib
 import io
 import re
 import signal
@@ -8,6 +9,7 @@ import threading
 import urllib.error
 import urllib.request
 import webbrowser
+from contextlib import contextmanager
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -16,11 +18,14 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from rich.console import Console
 
+from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import REPLAY, SCENARIO, SIGNALS, SUMMARY
+from humanwalk.run.folder import REPLAY
 from humanwalk.scenario import load_scenario
-from humanwalk.view.replay import add_visualizer, make_meshcat, replay_server, serve_replay, static_page
+from humanwalk.terrain import Plane
+from humanwalk.view.replay import make_meshcat, replay_page, safe_page, static_page
+from humanwalk.view.serve import replay_server, serve_replay
 
 FRAME_RATE = 32.0
 DURATION = 0.25
@@ -57,15 +62,15 @@ def page(meshcat):
     builder = DiagramBuilder()
     walker = builder.AddSystem(make_walker(load_scenario("thesis")))
     ports = {name: walker.GetOutputPort(name) for name in ("query_object", "foot_forces")}
-    add_visualizer(builder, ports["query_object"], meshcat, FRAME_RATE, ports["foot_forces"])
+    add_visualizer(builder, ports["query_object"], meshcat, FRAME_RATE, Plane(), ports["foot_forces"])
     Simulator(builder.Build()).AdvanceTo(DURATION)
     return static_page(meshcat, TITLE)
 
 
 @pytest.fixture(scope="module")
 def animation(page):
-    """The recording inside the page: one msgpack command."""
-    commands = [base64.b64decode(code) for code in re.findall(r"base64,([A-Za-z0-9+/=]+)", page)]
+    """The recorded animation in the page: one msgpack command."""
+    commands = [base64.b64decode(code) for code in re.findall(r'"([A-Za-z0-9+/=]{100,})"', page)]
     (animation,) = [command for command in commands if b"set_animation" in command]
     return animation
 
@@ -73,14 +78,6 @@ def animation(page):
 @pytest.fixture(scope="module")
 def elements(page):
     return Elements(page)
-
-
-@pytest.fixture
-def run(tmp_path):
-    for name in (SCENARIO, SIGNALS, SUMMARY):
-        (tmp_path / name).touch()
-    (tmp_path / REPLAY).write_text("<p>the walk</p>")
-    return tmp_path
 
 
 def listening_addresses(port):
@@ -108,26 +105,28 @@ def test_no_element_of_the_page_names_another_file_or_host(elements):
     assert all(reference.startswith("data:") for reference in references)
 
 
-def test_scripts_and_styles_fetch_only_what_the_page_holds(elements):
-    fetched = re.findall(r'^fetch\("([^"]{,30})', elements.text["script"], re.MULTILINE)
-    assert fetched
-    assert all(url.startswith("data:") for url in fetched)
+def test_styles_refer_to_no_file(elements):
     assert "url(" not in elements.text["style"]
     assert "@import" not in elements.text["style"]
 
 
-def test_page_forbids_the_browser_to_ask_any_host(elements):
+def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements, page):
     (policy,) = [
         attributes["content"]
         for tag, attributes in elements.found
         if tag == "meta" and attributes.get("http-equiv") == "Content-Security-Policy"
     ]
     directives = dict(directive.strip().split(" ", 1) for directive in policy.split(";"))
-    assert directives.pop("default-src") == "'none'"
-    assert {source for sources in directives.values() for source in sources.split()} == {
-        "'unsafe-inline'",
-        "data:",
-        "blob:",
+    scripts = re.findall(r'<script(?: type="text/javascript")?>(.*?)</script>', page, re.DOTALL)
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+    assert len(hashes) == 3
+    assert directives.pop("script-src").split() == [f"'sha256-{digest}'" for digest in hashes]
+    assert directives == {
+        "default-src": "'none'",
+        "style-src": "'unsafe-inline'",
+        "img-src": "data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
     }
 
 
@@ -161,18 +160,39 @@ def test_page_has_one_player(elements):
 
 
 def test_server_knows_only_the_page():
-    with replay_server(b"<p>the walk</p>") as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        root = f"http://127.0.0.1:{server.server_port}"
+    with served(b"<p>the walk</p>") as root:
         with urllib.request.urlopen(f"{root}/") as answer:
             assert answer.read() == b"<p>the walk</p>"
             assert answer.headers.get_content_type() == "text/html"
+            policy = answer.headers["Content-Security-Policy"]
+            assert policy.startswith("default-src 'none'; script-src 'sha256-")
+            assert policy.endswith("frame-ancestors 'none'")
         for other in ("/replay.html", "/scenario.yaml", "/../", "/?"):
             with pytest.raises(urllib.error.HTTPError) as error:
                 urllib.request.urlopen(root + other)
             assert error.value.code == 404
             error.value.close()
-        server.shutdown()
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1.evil.example", ""])
+def test_server_refuses_names_of_other_hosts(host):
+    """A web site can have its name resolve to 127.0.0.1 to read what is served there."""
+    with served(b"<p>the walk</p>") as root:
+        with pytest.raises(urllib.error.HTTPError) as error:
+            urllib.request.urlopen(urllib.request.Request(root, headers={"Host": host}))
+        assert error.value.code == 421
+        error.value.close()
+
+
+@contextmanager
+def served(page):
+    """The address of a running server."""
+    with replay_server(page) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}"
+        finally:
+            server.shutdown()
 
 
 def test_server_listens_on_the_loopback_only():
@@ -182,8 +202,10 @@ def test_server_listens_on_the_loopback_only():
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc/net/tcp to see open ports in")
-def test_meshcat_listens_on_the_loopback_only(meshcat):
-    addresses = listening_addresses(meshcat.port())
+def test_meshcat_listens_on_the_loopback_only_and_only_when_live(meshcat):
+    assert listening_addresses(meshcat.port()) == set()
+    live = make_meshcat(live=True)
+    addresses = listening_addresses(live.port())
     assert addresses
     assert addresses <= LOOPBACK
 
@@ -204,7 +226,7 @@ def test_replay_opens_the_page_and_ends_at_ctrl_c(run, monkeypatch):
         serve_replay(run, open_browser=True, console=Console(file=output))
     finally:
         signal.signal(signal.SIGINT, before)
-    assert seen == ["<p>the walk</p>"]
+    assert seen == [replay_page(["AAAA"], "a walk")]
     assert re.search(r"http://127\.0\.0\.1:\d+/", output.getvalue())
 
 
@@ -214,7 +236,7 @@ def test_replay_leaves_the_browser_alone_when_asked_to(run, monkeypatch):
 
     opened = []
     monkeypatch.setattr(webbrowser, "open", opened.append)
-    monkeypatch.setattr("humanwalk.view.replay.ThreadingHTTPServer.serve_forever", press_ctrl_c)
+    monkeypatch.setattr("humanwalk.view.serve.ThreadingHTTPServer.serve_forever", press_ctrl_c)
     serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
     assert opened == []
 
@@ -228,3 +250,33 @@ def test_run_without_replay_is_refused_with_a_mend(run):
 def test_folder_without_run_is_refused(tmp_path):
     with pytest.raises(ParameterError, match="no run"):
         serve_replay(tmp_path, open_browser=False, console=Console(file=io.StringIO()))
+
+
+def test_safe_page_of_our_page_is_the_same_page(page, tmp_path):
+    (tmp_path / REPLAY).write_text(page, encoding="utf-8")
+    assert safe_page(tmp_path / REPLAY) == page
+
+
+def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_path):
+    foreign = "<script>alert(1)</script><img src=http://evil.example/x>"
+    title = "&lt;b onload=alert(2)&gt;\x1b]0;evil\x07"
+    page = replay_page(["AAAA", "BBBB"], "TITLE").replace("TITLE", title).replace("<body>", f"<body>{foreign}")
+    (tmp_path / REPLAY).write_text(page.replace("viewer.handle_command =", "evil ="), encoding="utf-8")
+    assert safe_page(tmp_path / REPLAY) == replay_page(["AAAA", "BBBB"], r"<b onload=alert(2)>\x1b]0;evil\x07")
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        "",
+        "<html>",
+        '<script type="application/json" id="recording">[]</script>',
+        '<script type="application/json" id="recording">["<b>"]</script>',
+        '<script type="application/json" id="recording">["A" "B"]</script>',
+        '<script type="application/json" id="recording">["A"</script>',
+    ],
+)
+def test_page_without_recording_produces_a_one_line_error(page, tmp_path):
+    (tmp_path / REPLAY).write_text(page)
+    with pytest.raises(ParameterError, match="no recording"):
+        safe_page(tmp_path / REPLAY)

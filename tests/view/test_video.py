@@ -5,16 +5,9 @@ from itertools import pairwise
 import pytest
 
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import REPLAY, SCENARIO, SIGNALS, SUMMARY
-from humanwalk.view.browser import find_browser, open_stage
+from humanwalk.run.folder import REPLAY
+from humanwalk.view.browser import find_browser, has_sandbox, open_browser
 from humanwalk.view.video import VideoParameters, camera, find_ffmpeg, parse_size, parse_times, record_video
-
-
-@pytest.fixture
-def run(tmp_path):
-    for name in (SCENARIO, SIGNALS, SUMMARY, REPLAY):
-        (tmp_path / name).touch()
-    return tmp_path
 
 
 @pytest.mark.parametrize(
@@ -94,9 +87,9 @@ def test_a_run_without_replay_is_refused(run):
 )
 def test_without_the_extra_one_is_told_what_to_install(run, monkeypatch, module, need):
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(ParameterError, match=rf"{need} is not installed.*pip install 'humanwalk\[video\]'"):
+    with pytest.raises(ParameterError, match=rf"{need} is not installed.*pip install -e '\.\[video\]'"):
         if need == "playwright":
-            with open_stage(run / REPLAY, 64, 64):
+            with open_browser():
                 pass
         else:
             find_ffmpeg()
@@ -106,7 +99,7 @@ def test_the_browser_of_the_environment_comes_first_and_must_run(monkeypatch):
     monkeypatch.setenv("CHROMIUM", sys.executable)
     assert find_browser() == sys.executable
     monkeypatch.setenv("CHROMIUM", "/no/such/browser")
-    with pytest.raises(ParameterError, match="CHROMIUM: /no/such/browser is no program"):
+    with pytest.raises(ParameterError, match="CHROMIUM: /no/such/browser is not a program"):
         find_browser()
 
 
@@ -126,3 +119,9 @@ def test_a_place_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run, 
     blocked.touch()
     with pytest.raises(ParameterError, match="allowed: a folder that you may write to"):
         record_video(run, blocked / "walk.mp4", VideoParameters())
+
+
+@pytest.mark.parametrize(("user", "sandbox"), [(0, False), (1000, True)])
+def test_chromium_keeps_its_sandbox_except_for_root(monkeypatch, user, sandbox):
+    monkeypatch.setattr("os.geteuid", lambda: user)
+    assert has_sandbox() is sandbox

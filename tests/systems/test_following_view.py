@@ -1,0 +1,95 @@
+"""FollowingView alone: where Meshcat's scene and the force arrows are."""
+
+import struct
+
+import numpy as np
+import pytest
+from pydrake.geometry import SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+
+from humanwalk.body.limbs import PELVIS
+from humanwalk.body.plant import Subject, add_human
+from humanwalk.quantity import ParameterError
+from humanwalk.systems.following_view import ARROW_LENGTH_PER_FORCE, SCENE, FollowingView
+from humanwalk.terrain import Plane
+from humanwalk.view.replay import make_meshcat
+
+P_WP = np.array([3.0, 0.4, 1.2])
+RIGHT = [30.0, 0.0, 600.0, 3.1, -0.1, 0.0, 0.0, 1.0]
+LEFT_IN_THE_AIR = [0.0] * 8
+
+
+@pytest.fixture(scope="module")
+def meshcat():
+    return make_meshcat()
+
+
+def doubles(packed, count):
+    """The last numbers of a msgpack message, each a tag and eight bytes."""
+    return np.array([struct.unpack(">d", packed[len(packed) - 9 * i + 1 :][:8])[0] for i in range(count, 0, -1)])
+
+
+def transform(meshcat, path):
+    return RigidTransform(doubles(meshcat._GetPackedTransform(path), 16).reshape(4, 4).T)
+
+
+def show(meshcat, terrain, forces=None):
+    """Publish the human standing at P_WP once."""
+    builder = DiagramBuilder()
+    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
+    add_human(plant, Subject())
+    plant.Finalize()
+    plant.SetDefaultFloatingBaseBodyPose(plant.GetBodyByName(PELVIS), RigidTransform(P_WP))
+    view = builder.AddSystem(FollowingView(meshcat, 32.0, terrain))
+    builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
+    diagram = builder.Build()
+    context = diagram.CreateDefaultContext()
+    if forces is not None:
+        view.GetInputPort("foot_forces").FixValue(view.GetMyContextFromRoot(context), np.array(forces))
+    Simulator(diagram, context).Initialize()
+
+
+def test_ports(meshcat):
+    view = FollowingView(meshcat, 32.0, Plane())
+    assert [view.get_input_port(i).get_name() for i in range(2)] == ["query_object", "foot_forces"]
+    assert view.GetInputPort("foot_forces").size() == 16
+    assert view.num_output_ports() == 0
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.2])
+def test_scene_moves_back_along_x_and_down_with_the_ground(meshcat, slope):
+    show(meshcat, Plane(slope=slope))
+    expected = [-P_WP[0], 0.0, -P_WP[0] * np.tan(slope)]
+    np.testing.assert_allclose(transform(meshcat, SCENE).translation(), expected, atol=1e-12)
+
+
+def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshcat):
+    show(meshcat, Plane(), RIGHT + LEFT_IN_THE_AIR)
+    force = np.array(RIGHT[:3])
+    X_WA = transform(meshcat, f"{SCENE}/foot_force/Right")
+    np.testing.assert_allclose(X_WA.translation(), RIGHT[3:6], atol=1e-12)
+    np.testing.assert_allclose(X_WA.rotation().col(2), force / np.linalg.norm(force), atol=1e-12)
+    length = ARROW_LENGTH_PER_FORCE * np.linalg.norm(force)
+    head = transform(meshcat, f"{SCENE}/foot_force/Right/head")
+    np.testing.assert_allclose(head.translation(), [0.0, 0.0, length], atol=1e-12)
+    scale = doubles(meshcat._GetPackedProperty(f"{SCENE}/foot_force/Right/shaft", "scale"), 3)
+    np.testing.assert_allclose(scale, [1.0, 1.0, length])
+
+
+def test_arrow_of_an_unloaded_foot_is_invisible(meshcat):
+    show(meshcat, Plane(), RIGHT + LEFT_IN_THE_AIR)
+    visible = {side: meshcat._GetPackedProperty(f"{SCENE}/foot_force/{side}", "visible") for side in ("Right", "Left")}
+    # Msgpack's true and false.
+    assert {side: packed[-1] for side, packed in visible.items()} == {"Right": 0xC3, "Left": 0xC2}
+
+
+def test_scene_without_a_human_is_refused(meshcat):
+    builder = DiagramBuilder()
+    scene_graph = builder.AddSystem(SceneGraph())
+    view = builder.AddSystem(FollowingView(meshcat, 32.0, Plane()))
+    builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
+    with pytest.raises(ParameterError, match="no body Pelvis"):
+        Simulator(builder.Build()).Initialize()
