@@ -10,6 +10,8 @@ from pathlib import Path
 
 from humanwalk.quantity import ParameterError, printable
 
+WRITABLE = "a folder that you may write to, with room; choose another with -o"
+
 TEMPORARY_NAME = 80
 """Length of file name that a folder has to take [bytes]: a file that is being written has a longer name for a while."""
 
@@ -27,7 +29,7 @@ def read_regular(path: Path, limit: int) -> bytes:
         ParameterError: there is no such file, it is no regular one, it is larger, or it cannot be read.
     """
     with (
-        _as_parameter_error(path, "a readable file; check the path and its permissions"),
+        file_errors(path, "a readable file; check the path and its permissions"),
         open(path, "rb", buffering=0, opener=_open_without_waiting) as file,
     ):
         status = os.fstat(file.fileno())
@@ -59,7 +61,7 @@ def require_inside(folder: Path, path: Path) -> Path:
     Raises:
         ParameterError: it leads outside, by its name or by a symbolic link.
     """
-    with _as_parameter_error(path, "a path inside the folder"):
+    with file_errors(path, "a path inside the folder"):
         inside = path.resolve().is_relative_to(folder.resolve())
     if not inside:
         raise ParameterError(
@@ -78,7 +80,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     Raises:
         ParameterError: the file cannot be written, with the system's reason.
     """
-    with _writing(path):
+    with file_errors(path, WRITABLE):
         handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
         os.close(handle)
         beside = Path(name)
@@ -106,7 +108,7 @@ def make_folder(path: Path) -> list[Path]:
     Raises:
         ParameterError: it cannot be made or written into, or its name is no text that other programs can read.
     """
-    with _writing(path):
+    with file_errors(path, WRITABLE):
         os.fspath(path).encode()
         made = [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
@@ -120,8 +122,13 @@ def _open_without_waiting(path: str, flags: int) -> int:
 
 
 @contextmanager
-def _as_parameter_error(path: Path, allowed: str) -> Iterator[None]:
-    """Turn an error of the file system, or a name that no file can have, into one line."""
+def file_errors(path: Path, allowed: str) -> Iterator[None]:
+    """Turn an error of the file system in the block, or a name that no file can have, into a one-line ParameterError.
+
+    Args:
+        path: what the block reads or writes.
+        allowed: what it has to be, and the fix.
+    """
     try:
         if "\0" in str(path):
             raise OSError(errno.EINVAL, "a NUL character in a name")
@@ -130,9 +137,3 @@ def _as_parameter_error(path: Path, allowed: str) -> Iterator[None]:
         raise ParameterError(f"{printable(path)}: {error.strerror or error}; allowed: {allowed}") from None
     except UnicodeEncodeError:
         raise ParameterError(f"{printable(path)}: not UTF-8 text; allowed: {allowed}") from None
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    with _as_parameter_error(path, "a folder that you may write to, with room; choose another with -o"):
-        yield

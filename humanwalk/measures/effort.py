@@ -1,11 +1,20 @@
 """Torque, work and cost of transport of the joints."""
 
+from typing import TypedDict
+
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.quantity import GRAVITY
+
+
+class JointWork(TypedDict):
+    """Work of a joint per stride [J]: delivered, and absorbed (negative)."""
+
+    positive: float
+    negative: float
 
 
 def joint_names(signals: pa.Table) -> list[str]:
@@ -35,7 +44,7 @@ def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: floa
     return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
 
 
-def joint_work(signals: pa.Table, touchdowns: npt.NDArray[np.int_]) -> dict[str, dict[str, float]] | None:
+def joint_work(signals: pa.Table, touchdowns: npt.NDArray[np.int_]) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
     Args:

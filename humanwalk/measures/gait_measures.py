@@ -4,34 +4,74 @@ A stride of a foot lasts from a touchdown to its next one. A step ends with a to
 last touchdown of the other foot. A stance lasts from touchdown to toe-off. Lengths are along x, the walking direction.
 """
 
-from typing import Any
+from collections.abc import Callable
+from typing import TypedDict
 
 import numpy as np
 import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
-from humanwalk.measures.effort import joint_work
+from humanwalk.measures.effort import JointWork, joint_work
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.numerics import Array
 
 
-def gait_measures(signals: pa.Table, begin: float) -> dict[str, Any]:
-    """All gait measures of a record from a time [s] on, ready for JSON; means over steps or strides, null without."""
+class OfFeet(TypedDict):
+    """A number for each foot, None where it has no step or stride."""
+
+    right: float | None
+    left: float | None
+
+
+class Strides(TypedDict):
+    """Number of strides of each foot."""
+
+    right: int
+    left: int
+
+
+class CopExcursion(TypedDict):
+    """Range of the center of pressure along each axis."""
+
+    x: OfFeet
+    y: OfFeet
+
+
+class GaitMeasures(TypedDict):
+    """Means over the steps, strides or stances of each foot; keys carry their units."""
+
+    strides: Strides
+    stride_time_s: OfFeet
+    stride_length_m: OfFeet
+    step_time_s: OfFeet
+    step_length_m: OfFeet
+    step_width_m: OfFeet
+    stance_share: OfFeet
+    double_support_share: OfFeet
+    cadence_1_min: float | None
+    stride_speed_m_s: float | None
+    cop_excursion_m: CopExcursion
+    joint_work_J: dict[str, JointWork] | None
+
+
+def gait_measures(signals: pa.Table, begin: float) -> GaitMeasures:
+    """All gait measures of a record from a time [s] on."""
     feet = {side: events_of(signals, side, begin) for side in SIDES}
     return {
-        "strides": {side.lower(): len(foot.strides) for side, foot in feet.items()},
-        "stride_time_s": _each(feet, lambda side: stride_times(feet[side])),
-        "stride_length_m": _each(feet, lambda side: stride_lengths(signals, side, feet[side])),
-        "step_time_s": _each(feet, lambda side: step_times(feet[side], feet[other_side(side)])),
-        "step_length_m": _each(feet, lambda side: step_lengths(signals, side, feet[side])),
-        "step_width_m": _each(feet, lambda side: step_widths(signals, side, feet[side])),
-        "stance_share": _each(feet, lambda side: stance_shares(feet[side])),
-        "double_support_share": _each(feet, lambda side: double_support_shares(feet[side], feet[other_side(side)])),
+        "strides": {"right": len(feet["Right"].strides), "left": len(feet["Left"].strides)},
+        "stride_time_s": _means(lambda side: stride_times(feet[side])),
+        "stride_length_m": _means(lambda side: stride_lengths(signals, side, feet[side])),
+        "step_time_s": _means(lambda side: step_times(feet[side], feet[other_side(side)])),
+        "step_length_m": _means(lambda side: step_lengths(signals, side, feet[side])),
+        "step_width_m": _means(lambda side: step_widths(signals, side, feet[side])),
+        "stance_share": _means(lambda side: stance_shares(feet[side])),
+        "double_support_share": _means(lambda side: double_support_shares(feet[side], feet[other_side(side)])),
         "cadence_1_min": cadence(feet),
         "stride_speed_m_s": stride_speed(signals, feet),
         "cop_excursion_m": {
-            axis: _each(feet, lambda side, axis=axis: cop_excursions(signals, side, feet[side], axis)) for axis in "xy"
+            "x": _means(lambda side: cop_excursions(signals, side, feet[side], "x")),
+            "y": _means(lambda side: cop_excursions(signals, side, feet[side], "y")),
         },
         "joint_work_J": joint_work(signals, feet["Right"].touchdowns),
     }
@@ -101,7 +141,10 @@ def _sole(signals: pa.Table, side: Side, axis: str) -> Array:
     return place
 
 
-def _each(feet: dict[Side, FootEvents], measure: Any) -> dict[str, float | None]:
-    """Mean of a measure for each foot."""
-    found = {side.lower(): measure(side) for side in feet}
-    return {side: float(values.mean()) if values.size else None for side, values in found.items()}
+def of_feet(value: Callable[[Side], float | None]) -> OfFeet:
+    """A number for each foot."""
+    return {"right": value("Right"), "left": value("Left")}
+
+
+def _means(measure: Callable[[Side], Array]) -> OfFeet:
+    return of_feet(lambda side: float(values.mean()) if (values := measure(side)).size else None)

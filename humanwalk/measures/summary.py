@@ -2,7 +2,7 @@
 
 import math
 from importlib.metadata import version
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.choices.reference import make_gait
 from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
-from humanwalk.measures.gait_measures import gait_measures
+from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.scenario import Scenario
@@ -21,8 +21,43 @@ SETTLING = 2.0
 """Time that the balanced walk takes to settle after its first ramp [s]."""
 
 
-def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> dict[str, Any]:
-    """The summary of a run, ready for JSON; keys carry their units.
+class Summary(TypedDict):
+    """The measures of a run, ready for JSON; keys carry their units, None is a number that the run does not have."""
+
+    scenario: str
+    description: str
+    survived: bool
+    end: str
+    physics: bool
+    duration_s: float
+    fall_time_s: float | None
+    steady_from_s: float | None
+    distance_m: float
+    mean_speed_m_s: float | None
+    commanded_speed_m_s: float | None
+    lateral_drift_m: float
+    foot_lift_m: OfFeet
+    foot_line_error_m: OfFeet
+    steps: int | None
+    external_support: bool
+    support_force_rms_N: float | None
+    support_torque_rms_N_m: float | None
+    pelvis_tracking_rms_m: float | None
+    peak_torque_N_m: dict[str, float | None]
+    saturated_share: dict[str, float | None]
+    tracking_error_rad: dict[str, float | None]
+    ik_converged_share: float | None
+    qp_failures: int | None
+    cost_of_transport: float | None
+    wall_time_s: float
+    realtime_factor: float
+    versions: dict[str, str]
+    seed: int
+    gait: GaitMeasures | None
+
+
+def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> Summary:
+    """Measure a run.
 
     Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
     end. A run that ended before has null there, and so has every number that is not finite. Without physics there are
@@ -34,7 +69,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     com = matrix(signals, ["com.x_m", "com.y_m"])
     physics = not scenario.follow.kinematic
     supported = physics and scenario.controller == "thesis" and scenario.balance.support.enabled
-    summary = {
+    summary: Summary = {
         "scenario": name,
         "description": scenario.description,
         "survived": end == "completed",
@@ -47,8 +82,8 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
         "commanded_speed_m_s": None if scenario.follow.file else scenario.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
-        "foot_lift_m": {side.lower(): foot_lift(signals, side) if physics else None for side in SIDES},
-        "foot_line_error_m": {side.lower(): foot_line_error(signals, side) for side in SIDES},
+        "foot_lift_m": of_feet(lambda side: foot_lift(signals, side) if physics else None),
+        "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
         "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,
         "external_support": supported,
         "support_force_rms_N": _rms_norm(signals, "support.force_", "N", steady) if supported else 0.0,
@@ -66,7 +101,8 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "seed": scenario.seed,
         "gait": gait_measures(signals, steady_from(scenario)) if physics else None,
     }
-    return {key: _finite(value) for key, value in summary.items()}
+    finite: Summary = _finite(summary)
+    return finite
 
 
 def steady_from(scenario: Scenario) -> float:

@@ -2,23 +2,26 @@
 
 import fcntl
 import json
+import math
 import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
+from operator import methodcaller
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from humanwalk.files import make_folder, write_text, write_whole
+from humanwalk.files import WRITABLE, file_errors, make_folder, read_regular, require_inside, write_text, write_whole
 from humanwalk.measures.signals import TIME, column_of, unit_of
+from humanwalk.measures.summary import Summary
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError
-from humanwalk.run.provenance import provenance
+from humanwalk.quantity import ParameterError, printable
+from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance
+from humanwalk.run.stored import MAX_ROWS, RunSummary, read_signals, read_summary
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
 
 SCENARIO = "scenario.yaml"
@@ -30,6 +33,8 @@ RECORDING = "recording"
 MAPPING = "mapping.yaml"
 """Copies of what the run followed; the recording has its own suffix."""
 
+READABLE = "a run folder that you may read; check its permissions"
+
 SIGNALS_BYTES_PER_ROW = 2600
 REPLAY_BYTES_PER_FRAME = 11_000
 OTHER_BYTES = 20_000_000
@@ -38,7 +43,7 @@ OTHER_BYTES = 20_000_000
 
 @dataclass(frozen=True)
 class Run:
-    """A run folder that is complete enough to look at: scenario, signals and summary are there."""
+    """A run folder with scenario, signals and summary; each of them is read and checked on first use."""
 
     path: Path
 
@@ -47,39 +52,47 @@ class Run:
         """The run in a folder.
 
         Raises:
-            ParameterError: the folder holds no run.
+            ParameterError: the folder holds no run, or cannot be read.
         """
         path = Path(path)
         for name in (SCENARIO, SIGNALS, SUMMARY):
-            if not (path / name).is_file():
+            with file_errors(path, READABLE):
+                found = require_inside(path, path / name).is_file()
+            if not found:
                 raise ParameterError(
-                    f"{path}: no run, {name} is missing; allowed: a folder written by humanwalk walk; "
+                    f"{printable(path)}: no run, {name} is missing; allowed: a folder written by humanwalk walk; "
                     "give its path, or walk again"
                 )
         return Run(path)
 
     @cached_property
     def scenario(self) -> Scenario:
-        """What was simulated."""
-        return load_scenario(self.path / SCENARIO)
+        """What was simulated.
+
+        Raises:
+            ParameterError: it is no scenario, or follows a file outside the run folder.
+        """
+        scenario = load_scenario(self.path / SCENARIO)
+        for followed in filter(None, (scenario.follow.file, scenario.follow.mapping)):
+            require_inside(self.path, Path(followed))
+        return scenario
 
     @cached_property
     def signals(self) -> pa.Table:
-        """The record; see `humanwalk.measures.signals`."""
-        return pq.read_table(self.path / SIGNALS)
+        """The record; see `humanwalk.measures.signals` and `humanwalk.run.stored.read_signals`."""
+        return read_signals(self.path / SIGNALS, self.scenario, self.summary["provenance"]["signals_sha256"])
 
     @cached_property
-    def summary(self) -> dict[str, Any]:
-        """The measures; see `humanwalk.measures.summary.summarize`."""
-        summary: dict[str, Any] = json.loads((self.path / SUMMARY).read_text(encoding="utf-8"))
-        return summary
+    def summary(self) -> RunSummary:
+        """The measures; see `humanwalk.measures.summary.Summary`."""
+        return read_summary(self.path / SUMMARY)
 
     def require_physics(self) -> None:
         """Raise ParameterError unless there are torques and forces."""
         if self.scenario.follow.kinematic:
             raise ParameterError(
-                f"{self.path}: a kinematic run has no forces and no torques; allowed: one with physics; walk again "
-                "without --kinematic"
+                f"{printable(self.path)}: a kinematic run has no forces and no torques; allowed: one with physics; "
+                "walk again without --kinematic"
             )
 
     @property
@@ -106,12 +119,14 @@ class Run:
         """The replay page.
 
         Raises:
-            ParameterError: the run was walked without.
+            ParameterError: the run was walked without it.
         """
-        page = self.path / REPLAY
-        if not page.is_file():
+        with file_errors(self.path, READABLE):
+            page = require_inside(self.path, self.path / REPLAY)
+            found = page.is_file()
+        if not found:
             raise ParameterError(
-                f"{self.path}: no {REPLAY}; allowed: a run that was walked with its replay; "
+                f"{printable(self.path)}: no {REPLAY}; allowed: a run that was walked with its replay; "
                 "walk again without --no-replay"
             )
         return page
@@ -119,7 +134,15 @@ class Run:
     @property
     def plots(self) -> Path:
         """The folder of plots."""
-        return self.path / PLOTS
+        return self.subfolder(PLOTS)
+
+    def subfolder(self, name: str) -> Path:
+        """A folder for results inside the run folder, which may not exist yet.
+
+        Raises:
+            ParameterError: it is a symbolic link that leads out of the run folder.
+        """
+        return require_inside(self.path, self.path / name)
 
 
 def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[Path]]:
@@ -132,17 +155,20 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
         ParameterError: the wanted folder is not empty, or cannot be made.
     """
     if wanted is not None:
-        if wanted.is_dir() and any(wanted.iterdir()):
-            raise ParameterError(
-                f"-o {wanted}: holds files already; allowed: a new or empty folder; choose another, or remove it first"
-            )
-        return wanted, make_folder(wanted)
+        made = make_folder(wanted)
+        with file_errors(wanted, WRITABLE):
+            if any(wanted.iterdir()):
+                raise ParameterError(
+                    f"-o {printable(wanted)}: holds files already; allowed: a new or empty folder; choose another, or "
+                    "remove it first"
+                )
+        return wanted, made
     number = 1
     while True:
         path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
         parents = make_folder(path.parent)
         # Of two runs that start together only one makes the folder.
-        with suppress(FileExistsError):
+        with file_errors(path, WRITABLE), suppress(FileExistsError):
             path.mkdir()
             return path, [path, *parents]
         number += 1
@@ -155,37 +181,51 @@ def claimed(folder: Path) -> Iterator[None]:
     Raises:
         ParameterError: another run has claimed it, or has written into it meanwhile.
     """
-    handle = os.open(folder, os.O_RDONLY)
+    with file_errors(folder, WRITABLE):
+        handle = os.open(folder, os.O_RDONLY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if any(folder.iterdir()):
-            raise BlockingIOError
+        if not _lock_empty(folder, handle):
+            raise ParameterError(
+                f"-o {printable(folder)}: another run writes into it; allowed: a folder for every run; choose another"
+            )
         yield
-    except BlockingIOError:
-        raise ParameterError(
-            f"-o {folder}: another run writes into it; allowed: a folder for every run; choose another"
-        ) from None
     finally:
         os.close(handle)
+
+
+def _lock_empty(folder: Path, handle: int) -> bool:
+    with file_errors(folder, WRITABLE):
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return not any(folder.iterdir())
 
 
 def require_room(folder: Path, scenario: Scenario) -> None:
     """Raise ParameterError unless the disk has room for the run: better now than when it is simulated."""
     rows = scenario.duration / scenario.recording.signal_period
+    if rows + 1 > MAX_ROWS:
+        raise ParameterError(
+            f"recording.signal_period: {rows:.0f} rows in {scenario.duration:g} s; allowed: up to {MAX_ROWS}; "
+            f"set it to {math.ceil(1e3 * scenario.duration / MAX_ROWS) / 1e3:g} s, or walk shorter"
+        )
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
-    # What cannot be read is refused by who reads it, with the reason.
+    # A recording that cannot be read is refused by its reader.
     with suppress(OSError, ValueError):
         needed += Path(scenario.follow.file).stat().st_size if scenario.follow.file else 0
-    free = shutil.disk_usage(folder).free
+    with file_errors(folder, WRITABLE):
+        free = shutil.disk_usage(folder).free
     if free < needed:
         raise ParameterError(
-            f"-o {folder}: {free / 1e6:.0f} MB are free on that disk; allowed: from about {needed / 1e6:.0f} MB on for "
-            f"{scenario.duration:g} s; make room, choose another folder, or record less (recording.signal_period)"
+            f"-o {printable(folder)}: {free / 1e6:.0f} MB are free on that disk; allowed: from about "
+            f"{needed / 1e6:.0f} MB for {scenario.duration:g} s; make room, choose another folder, or record less "
+            "(recording.signal_period)"
         )
 
 
-def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: dict[str, Any]) -> Run:
+def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: Summary) -> Run:
     """Write a simulation into its folder, each file whole or not at all.
 
     The summary comes last: a folder that has one is a complete run. A followed recording and its mapping are copied
@@ -197,25 +237,24 @@ def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: dict[s
         signals: the record.
         summary: its measures, see `humanwalk.measures.summary.summarize`; the provenance is added.
     """
-    summary = summary | {"provenance": provenance(scenario, signals)}
-    metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"]} | summary["provenance"]).encode()}
+    origin = provenance(scenario, signals)
+    metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"], **origin}).encode()}
     signals = signals.replace_schema_metadata(metadata)
     write_text(path / SCENARIO, dump_scenario(_keep_followed(path, scenario)))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
-    write_text(path / SUMMARY, json.dumps(summary, indent=2) + "\n")
+    write_text(path / SUMMARY, json.dumps({**summary, "provenance": origin}, indent=2) + "\n")
     return Run(path)
 
 
 def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
     """Copy the recording and the mapping that a scenario follows; returns the scenario that follows the copies."""
     follow = scenario.follow
-    kept: dict[str, Any] = {}
-    names = {"file": RECORDING + Path(follow.file).suffix.lower(), "mapping": MAPPING}
-    for field, name in names.items():
-        followed = getattr(follow, field)
-        # One that was moved while it was simulated stays where it was; a checkpoint has copied it before.
-        if followed and Path(followed).is_file():
-            if not (path / name).exists():
-                write_whole(path / name, partial(shutil.copyfile, followed))
-            kept[field] = name
-    return replace(scenario, follow=replace(follow, **kept))
+    recording = follow.file and RECORDING + Path(follow.file).suffix.lower()
+    mapping = follow.mapping and MAPPING
+    for source, name in ((follow.file, recording), (follow.mapping, mapping)):
+        if source and not (path / name).exists():
+            # One that was moved during the simulation is missing in the run folder, unless a checkpoint has copied it.
+            with suppress(ParameterError):
+                content = read_regular(Path(source), MAX_FOLLOWED_BYTES)
+                write_whole(path / name, methodcaller("write_bytes", content))
+    return replace(scenario, follow=replace(follow, file=recording, mapping=mapping))

@@ -2,11 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
-from humanwalk.measures.summary import summarize
+from humanwalk.measures.summary import Summary, summarize
 from humanwalk.run.folder import Run, new_run_folder, write_run
 from humanwalk.scenario import Scenario
 
@@ -33,7 +32,7 @@ class Outcome:
         """Whether the walker was up for the whole duration."""
         return self.end == "completed"
 
-    def summary(self, name: str = "script") -> dict[str, Any]:
+    def summary(self, name: str = "script") -> Summary:
         """The measures, under the name of the scenario; see `humanwalk.measures.summary.summarize`."""
         return summarize(self.scenario, self.signals, self.end, self.wall_time, name)
 

@@ -5,17 +5,33 @@ import platform
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 import pyarrow as pa
 
+from humanwalk.files import read_regular
+from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, dump_scenario
 
 PACKAGES = ("humanwalk", "drake", "numpy")
 
+MAX_FOLLOWED_BYTES = 200_000_000
+"""Largest recording or mapping that is hashed and copied into a run folder."""
 
-def provenance(scenario: Scenario, signals: pa.Table) -> dict[str, Any]:
+
+class Provenance(TypedDict):
+    """What a run came from; hashes are SHA-256."""
+
+    seed: int
+    scenario_sha256: str
+    signals_sha256: str
+    recording_sha256: str | None
+    mapping_sha256: str | None
+    versions: dict[str, str]
+
+
+def provenance(scenario: Scenario, signals: pa.Table) -> Provenance:
     """Seed, versions and SHA-256 of scenario, signals, and followed recording and mapping (null without), for JSON."""
     return {
         "seed": scenario.seed,
@@ -52,6 +68,6 @@ def signals_hash(signals: pa.Table) -> str:
 def file_hash(path: str) -> str | None:
     """Of a file's bytes, or None if there is no path or it cannot be read any more."""
     try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest() if path else None
-    except OSError:
+        return hashlib.sha256(read_regular(Path(path), MAX_FOLLOWED_BYTES)).hexdigest() if path else None
+    except ParameterError:
         return None

@@ -9,7 +9,7 @@ import numpy as np
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
-from humanwalk.run.provenance import file_hash, scenario_hash, versions
+from humanwalk.run.provenance import Provenance, file_hash, scenario_hash, versions
 from humanwalk.run.simulate import simulate
 
 TOLERANCE = 0.01
@@ -48,7 +48,7 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     Raises:
         ParameterError: the run's scenario cannot be simulated any more, or its recording is gone.
     """
-    scenario, then = run.scenario, run.summary.get("provenance", {})
+    scenario, then = run.scenario, run.summary["provenance"]
     notes = list(_changes(run, then))
     last = float(run.time[-1])
     again = simulate(
@@ -87,16 +87,13 @@ def _end(run: Run, end: str) -> str:
     return "interrupted" if run.summary["end"] == "interrupted" and end == "completed" else end
 
 
-def _changes(run: Run, then: Mapping[str, Any]) -> Iterator[str]:
+def _changes(run: Run, then: Provenance) -> Iterator[str]:
     """What is not as it was when the run was made."""
-    if not then:
-        yield "the run does not say what it came from; only its scenario is known"
-        return
     if then["scenario_sha256"] != scenario_hash(run.scenario):
         yield "scenario.yaml was changed since the run, or has fields that this version reads otherwise"
-    for what, path in (("recording", run.scenario.follow.file), ("mapping", run.scenario.follow.mapping)):
-        # A run of an earlier version has no hash of its mapping.
-        if path and _followed_hash(path) != then.get(f"{what}_sha256", _followed_hash(path)):
+    follow = run.scenario.follow
+    for path, was in ((follow.file, then["recording_sha256"]), (follow.mapping, then["mapping_sha256"])):
+        if path and _followed_hash(path) != was:
             yield f"{path} was changed since the run"
     now = versions()
     for name, was in then["versions"].items():

@@ -18,6 +18,7 @@ from humanwalk.measures.signals import Recorder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
+from humanwalk.run.stored import before_runaway
 from humanwalk.scenario import Scenario
 from humanwalk.terrain import Plane
 
@@ -126,7 +127,9 @@ def simulate(
             on_progress(simulated)
         now = time.perf_counter()
         if on_checkpoint is not None and now - last_checkpoint >= checkpoint_period:
-            on_checkpoint(Outcome(scenario, recorder.table(simulator.get_context()), "unfinished", now - started))
+            on_checkpoint(
+                Outcome(scenario, before_runaway(recorder.table(simulator.get_context())), "unfinished", now - started)
+            )
             last_checkpoint = time.perf_counter()
 
     monitor = Monitor(prepared.watched, on_progress=look)
@@ -142,7 +145,7 @@ def simulate(
             # then is kept.
             end = monitor.reason or f"solver failed: {(str(error) or repr(error)).splitlines()[0]}"
     wall_time = time.perf_counter() - started
-    signals = recorder.table(simulator.get_context())
+    signals = before_runaway(recorder.table(simulator.get_context()))
     if signals.num_rows == 0:
         raise ParameterError(f"simulation: nothing to record, it ended at its start: {end}; change start or actuators")
     return Outcome(scenario, signals, end, wall_time)

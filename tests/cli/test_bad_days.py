@@ -151,11 +151,11 @@ def test_full_disk_is_found_before_the_simulation(tmp_path, monkeypatch):
         require_room(tmp_path, load_scenario("thesis"))
 
 
-def test_more_simulated_time_needs_more_room(tmp_path, monkeypatch):
+def test_longer_run_needs_more_room(tmp_path, monkeypatch):
     monkeypatch.setattr("shutil.disk_usage", lambda path: type("Usage", (), {"free": 100_000_000})())
     require_room(tmp_path, load_scenario("thesis"))
     with pytest.raises(ParameterError, match="make room"):
-        require_room(tmp_path, load_scenario("thesis", {"duration": "3600"}))
+        require_room(tmp_path, load_scenario("thesis", {"duration": "1800"}))
 
 
 LIMIT = (

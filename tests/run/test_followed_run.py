@@ -1,6 +1,5 @@
 """A run that follows a recording holds all that it needs: it may be moved, and the recording may be lost."""
 
-import json
 import logging
 import shutil
 import sys
@@ -100,13 +99,6 @@ def test_copy_that_is_gone_is_said(run):
         reproduce(Run.open(run.path))
 
 
-def test_run_of_an_earlier_version_has_no_hash_of_its_mapping(run):
-    summary = run.summary
-    del summary["provenance"]["mapping_sha256"]
-    (run.path / "summary.json").write_text(json.dumps(summary))
-    assert reproduce(Run.open(run.path)).notes == ()
-
-
 def test_hash_of_a_scenario_does_not_know_where_its_files_are(tmp_path):
     here, there = (load_scenario("thesis", {"follow.file": f"{folder}/t.mot"}) for folder in ("a", "b"))
     assert scenario_hash(here) == scenario_hash(there)
@@ -130,8 +122,10 @@ def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
     outcome = simulate(load_scenario("thesis", {"follow.file": str(recording), "duration": "0.01"}))
     recording.rename(tmp_path / "moved.mot")
     run = outcome.save(tmp_path / "run")
-    assert run.scenario.follow.file == str(recording)
+    assert run.scenario.follow.file == str(run.path / "recording.mot")
     assert run.summary["provenance"]["recording_sha256"] is None
+    with pytest.raises(ParameterError, match=r"recording\.mot is gone"):
+        reproduce(run)
 
 
 # Without physics.

@@ -40,8 +40,9 @@ def change_summary(run, change):
 def change_signal(run, name, factor):
     table = pq.read_table(run.path / SIGNALS)
     column = pa.array(factor * table[name].to_numpy())
-    pq.write_table(table.set_column(table.column_names.index(name), name, column), run.path / SIGNALS)
-    return Run.open(run.path)
+    changed = table.set_column(table.column_names.index(name), name, column)
+    pq.write_table(changed, run.path / SIGNALS)
+    return change_summary(run, lambda summary: summary["provenance"].update(signals_sha256=signals_hash(changed)))
 
 
 def test_run_says_what_it_came_from(made):
@@ -102,8 +103,8 @@ def test_what_was_changed_since_is_noted(run):
 
 def test_run_whose_recording_is_gone_is_refused(run, tmp_path):
     text = (run.path / SCENARIO).read_text()
-    (run.path / SCENARIO).write_text(text.replace("file: ''", f"file: {tmp_path}/gone.mot"))
-    with pytest.raises(ParameterError, match=r"gone\.mot is gone"):
+    (run.path / SCENARIO).write_text(text.replace("file: ''", "file: recording.mot"))
+    with pytest.raises(ParameterError, match=r"recording\.mot is gone"):
         reproduce(Run.open(run.path))
 
 

@@ -50,7 +50,7 @@ def make_run(tmp_path, joints):
     """Writes the run of made-up signals, by its duration [s], whether it is supported, and a change of its signals."""
 
     def make(duration: float = 6.0, supported: bool = True, change=lambda signals: signals):
-        overrides = {"balance.support.enabled": str(supported).lower()}
+        overrides = {"balance.support.enabled": str(supported).lower(), "recording.signal_period": str(PERIOD)}
         signals = change(made_up_signals(joints, duration))
         if not supported:
             signals = signals.drop_columns([name for name in signals.column_names if name.startswith("support.")])

@@ -5,15 +5,16 @@ import html
 import json
 import re
 
-import pyarrow.parquet as pq
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from humanwalk.cli.main import app
 from humanwalk.measures.human_likeness import ANGLES
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run
-from humanwalk.scenario import dump_scenario, load_scenario
+from humanwalk.run.outcome import Outcome
+from humanwalk.run.stored import required_columns
+from humanwalk.scenario import load_scenario
 from humanwalk.view.report import (
     CURVE_HEADER,
     MEASURE_HEADER,
@@ -35,11 +36,11 @@ def make_run(walk, tmp_path):
         signals = walk(**made)
         for side in ("right", "left"):
             signals = signals.append_column(f"{side}_foot.force_x_N", signals[f"{side}_foot.force_z_N"])
-        (tmp_path / SCENARIO).write_text(dump_scenario(load_scenario("thesis", {"description": "A <b>walk</b>"})))
-        pq.write_table(signals, tmp_path / SIGNALS)
-        summary = {"end": end, "duration_s": 8.0, "steady_from_s": 0.4}
-        (tmp_path / SUMMARY).write_text(json.dumps(summary))
-        return Run.open(tmp_path)
+        zero = np.zeros(signals.num_rows)
+        for name in sorted(required_columns(physics=True).difference(signals.column_names)):
+            signals = signals.append_column(name, [zero])
+        scenario = load_scenario("thesis", {"description": "A <b>walk</b>", "balance.support.enabled": "false"})
+        return Outcome(scenario, signals, end, wall_time=1.0).write(tmp_path, "walk")
 
     return make
 
@@ -81,10 +82,10 @@ def test_numbers_for_a_program_are_stride_by_stride(make_run):
 
 def test_angle_that_never_moves_has_no_correlation_and_still_a_report(make_run):
     run = make_run()
-    signals = run.signals.to_pydict()
-    signals["RightLegTibiaMotion.angle_rad"] = [0.3] * run.signals.num_rows
-    pq.write_table(type(run.signals).from_pydict(signals), run.path / SIGNALS)
-    told = to_json(compare_run(Run.open(run.path)))
+    knee = "RightLegTibiaMotion.angle_rad"
+    still = [np.full(run.signals.num_rows, 0.3)]
+    signals = run.signals.set_column(run.signals.column_names.index(knee), knee, still)
+    told = to_json(compare_run(Outcome(run.scenario, signals, "completed", 1.0).write(run.path)))
     assert told["angles"]["knee"]["right"]["correlation"] == [None] * 7
     assert None not in told["angles"]["knee"]["right"]["rms_deg"]
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.events import events_of
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, over_strides, people
+from humanwalk.measures.summary import steady_from
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
@@ -78,7 +79,7 @@ def _three(title: str) -> Figure:
 
 def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
     """Draw a signal over the strides of a leg in steady walking; False if there was none."""
-    strides = over_strides(events_of(run.signals, side, run.summary["steady_from_s"]), values)
+    strides = over_strides(events_of(run.signals, side, steady_from(run.scenario)), values)
     if not len(strides):
         return False
     mean, sd = strides.mean(axis=0), strides.std(axis=0)
