@@ -6,8 +6,13 @@ from dataclasses import dataclass, field
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydrake.multibody.tree import UniformGravityFieldElement
 
-from humanwalk.quantity import UNIT_MISTAKES, ParameterError, check, printable, quantity, require_in_range
+from humanwalk.quantity import GRAVITY, UNIT_MISTAKES, ParameterError, check, printable, quantity, require_in_range
+
+
+def test_gravity_is_that_of_drake():
+    assert UniformGravityFieldElement.kDefaultStrength == GRAVITY
 
 
 @dataclass(frozen=True)

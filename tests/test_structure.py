@@ -38,7 +38,6 @@ PENDING: dict[str, dict[str, str]] = {
     },
     "size": {
         "founder": "scenario.py",
-        "h1": "body/anatomy.py",
         "h6": "cli/main.py",
     },
     "array": {

@@ -1,10 +1,13 @@
-"""The human as data: segment table, skeleton, scaling to a subject, and the model file."""
+"""The human as data: segments, skeleton, scaling to a subject, and model files."""
 
-from humanwalk.body.anatomy import LEG_JOINTS, REFERENCE_MASS, REFERENCE_STATURE, human
+from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
 from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_spheres, sole_patches
-from humanwalk.body.sdf import MODEL_NAME, to_sdf, write_sdf
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.sdf import MODEL_NAME, to_sdf
 from humanwalk.body.shapes import Box, Cylinder
 from humanwalk.body.skeleton import SIDES, Joint, Segment, Side, Skeleton, Weld
+
+LEG_JOINTS = {side: leg.chain for side, leg in LEGS.items()}
 
 __all__ = [
     "HYDRO_SET",
@@ -26,5 +29,4 @@ __all__ = [
     "human",
     "sole_patches",
     "to_sdf",
-    "write_sdf",
 ]

@@ -1,9 +1,9 @@
 """The reference human as data: 44 bodies and 42 revolute joints, 70 kg and 1.75 m.
 
-Masses and shapes of legs, arms, pelvis and ribs are the thesis' (Tables 3.1 and 3.2, with errata E2
-and E3). What it leaves open is chosen here: the 20.28 kg it does not place (erratum E29), the joint
-centres (E30), which body is welded (E17), the order of the axes and the ranges of motion. Legs and
-arms are written once, for the right side, and mirrored.
+Masses and shapes of legs, arms, pelvis and ribs are the thesis' (Tables 3.1 and 3.2, with errata E2 and E3). Chosen
+here is what the thesis leaves open: the 20.28 kg that it does not assign to a body (erratum E29), the joint centers
+(E30), the welded body (E17), the order of the axes and the ranges of motion. Legs and arms are defined for the right
+side and mirrored.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from humanwalk.body.shapes import Box, Cylinder
-from humanwalk.body.skeleton import Joint, Segment, Side, Skeleton, Vector3, Weld
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
 
 REFERENCE_MASS = 70.0
 """Body mass of the reference human [kg] (thesis 3.3.1)."""
@@ -20,14 +20,14 @@ REFERENCE_STATURE = 1.75
 """Stature of the reference human [m] (thesis 3.3.1)."""
 
 ROTOR_INERTIA = 0.01
-"""Reflected rotor inertia of every actuator [kg m2]. Numerical, not anatomical: without it the
-0.2 kg connector bodies, whose own inertia is 1e-4 kg m2, make explicit torques diverge."""
+"""Reflected rotor inertia of every actuator [kg m2] (our choice). Without it explicit torques diverge on the connector
+bodies of 0.2 kg, with their own inertia of 1e-4 kg m2."""
 DAMPING = 0.1
 """Viscous damping of every joint [N m s/rad]: passive tissue, our choice of a small value."""
 
 HIP_HEIGHT = 0.4242 + 0.439767 + 0.068
-"""Thigh + shank + ankle above the sole [m]: .533 of stature (Winter .530). The 47.5 cm femur of the
-thesis is a whole bone, not the distance between joints (erratum E30)."""
+"""Thigh + shank + ankle above the sole [m]: .533 of stature (Winter .530). The thesis' 47.5 cm femur is the whole bone,
+not the distance between joints (erratum E30)."""
 
 # Sources of masses and shapes.
 TABLE_3_1 = "thesis Table 3.1"
@@ -61,12 +61,6 @@ HERE: Vector3 = (0.0, 0.0, 0.0)
 
 Branch = tuple[Segment, Joint | Weld]
 
-_LEG_MOTIONS = ("Femur", "FemurSide", "FemurTwist", "Tibia", "Ankle", "AnkleRoll", "AnkleTwist")
-LEG_JOINTS: dict[Side, tuple[str, ...]] = {
-    side: tuple(f"{side}Leg{motion}Motion" for motion in _LEG_MOTIONS) for side in ("Right", "Left")
-}
-"""The seven joints from the hip to the hind-foot of each leg, in the order of the chain."""
-
 
 class _Range(NamedTuple):
     low_deg: float
@@ -98,6 +92,7 @@ def _right_leg() -> list[Branch]:
     along = Cylinder(0.0285715, 0.0503935, "x")
     ankle_along = Cylinder(0.0285717, 0.0503935, "x")
     hind_foot = Cylinder(0.0479659, 0.12771, "x")
+    mid_foot = Box(0.0889482, 0.095017, 0.0636254)
     return [
         _joined(
             Segment("RightLeg_HipPart1", across, 0.2, HERE, AS_ANKLE),
@@ -120,13 +115,7 @@ def _right_leg() -> list[Branch]:
             effort=_Effort(200, LEG_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightLeg_Femur_Thigh",
-                Cylinder(0.0721932, 0.474971),
-                7.84,
-                (0, 0, -0.2121),
-                TABLE_3_2,
-            ),
+            Segment("RightLeg_Femur_Thigh", Cylinder(0.0721932, 0.474971), 7.84, (0, 0, -0.2121), TABLE_3_2),
             "RightLegFemurTwistMotion",
             "hip internal rotation",
             parent="RightLeg_HipPart2",
@@ -136,13 +125,7 @@ def _right_leg() -> list[Branch]:
             effort=_Effort(150, LEG_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightLeg_Tibia",
-                Cylinder(0.0546879, 0.439767),
-                3.08,
-                (0, 0, -0.219884),
-                TABLE_3_2,
-            ),
+            Segment("RightLeg_Tibia", Cylinder(0.0546879, 0.439767), 3.08, (0, 0, -0.219884), TABLE_3_2),
             "RightLegTibiaMotion",
             "knee flexion",
             parent="RightLeg_Femur_Thigh",
@@ -182,13 +165,7 @@ def _right_leg() -> list[Branch]:
             effort=_Effort(80, OUR_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightLeg_FootMiddle",
-                Box(0.0889482, 0.095017, 0.0636254),
-                0.41,
-                (0.044474, 0, -0.003187),
-                TABLE_3_1,
-            ),
+            Segment("RightLeg_FootMiddle", mid_foot, 0.41, (0.044474, 0, -0.003187), TABLE_3_1),
             "RightLegFootMiddleMotion",
             "mid-foot dorsiflexion",
             parent="RightLeg_Ankle",
@@ -198,13 +175,7 @@ def _right_leg() -> list[Branch]:
             effort=_Effort(120, OUR_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightLeg_FootToes",
-                Box(0.0624232, 0.100962, 0.035185),
-                0.25,
-                (0.031212, 0, 0),
-                TABLE_3_1,
-            ),
+            Segment("RightLeg_FootToes", Box(0.0624232, 0.100962, 0.035185), 0.25, (0.031212, 0, 0), TABLE_3_1),
             "RightLegFootToesMotion",
             "toe extension",
             parent="RightLeg_FootMiddle",
@@ -337,13 +308,7 @@ def _right_arm() -> list[Branch]:
             effort=_Effort(80, OUR_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightArm_Humor_Upper_Arm",
-                Cylinder(0.0499598, 0.35071),
-                2.24,
-                (0, 0, -0.1475),
-                TABLE_3_2,
-            ),
+            Segment("RightArm_Humor_Upper_Arm", Cylinder(0.0499598, 0.35071), 2.24, (0, 0, -0.1475), TABLE_3_2),
             "RightArmShoulderTwistMotion",
             "shoulder internal rotation",
             parent="RightArm_ShoulderPart2",
@@ -353,13 +318,7 @@ def _right_arm() -> list[Branch]:
             effort=_Effort(80, OUR_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightArm_UlnaRadius_Forearm",
-                Cylinder(0.0453482, 0.292366),
-                1.26,
-                (0, 0, -0.1325),
-                TABLE_3_2,
-            ),
+            Segment("RightArm_UlnaRadius_Forearm", Cylinder(0.0453482, 0.292366), 1.26, (0, 0, -0.1325), TABLE_3_2),
             "RightArmElbowMotion",
             "elbow flexion",
             parent="RightArm_Humor_Upper_Arm",
@@ -369,13 +328,7 @@ def _right_arm() -> list[Branch]:
             effort=_Effort(60, OUR_STRENGTH),
         ),
         _joined(
-            Segment(
-                "RightArm_Hand",
-                Box(0.0788498, 0.040807, 0.096334),
-                0.4,
-                (0, 0, -0.048167),
-                TABLE_3_1,
-            ),
+            Segment("RightArm_Hand", Box(0.0788498, 0.040807, 0.096334), 0.4, (0, 0, -0.048167), TABLE_3_1),
             "RightArmWristMotion",
             "wrist palmar flexion",
             parent="RightArm_UlnaRadius_Forearm",

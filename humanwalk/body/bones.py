@@ -1,6 +1,6 @@
-"""The second look: rods from joint to joint, the joints with their axes, and the points that touch the ground.
+"""The look `bones`: rods from joint to joint, the joints with their axes, and the contact spheres of the feet.
 
-It is made of the skeleton alone, so it shows any body as it is computed with: nothing is drawn by hand.
+It is drawn from the skeleton alone, so that it shows the geometry of the computed body.
 """
 
 from collections.abc import Iterator
@@ -16,18 +16,18 @@ SKULL: Color = (0.93, 0.91, 0.84)
 JOINT: Color = (0.25, 0.25, 0.27)
 CONTACT: Color = (0.93, 0.77, 0.15)
 AXIS_COLORS: dict[str, Color] = {"x": (0.80, 0.12, 0.12), "y": (0.10, 0.55, 0.20), "z": (0.15, 0.25, 0.75)}
-"""Of the axis nearest to the joint's: turning about forward, sideways and up."""
+"""Color of the axis that is closest to the joint's."""
 
 ROD_RADIUS, THIN_RADIUS, JOINT_RADIUS = 0.015, 0.006, 0.021
 AXIS_RADIUS, AXIS_LENGTH = 0.005, 0.11
-SHORTEST_ROD = 0.005
-"""Of the reference human [m]; joints nearer to each other than the last have no rod between them."""
+MIN_ROD = 0.005
+"""Radii and lengths of the reference human [m]; joints closer than `MIN_ROD` have no rod between them."""
 
 ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
 
 def bones(skeleton: Skeleton) -> tuple[Visual, ...]:
-    """Rods, joints, axes and contact points of a body, in body frames."""
+    """Return rods, joints, axes and contact spheres of a body, in body frames."""
     scale = skeleton.stature / REFERENCE_STATURE
     return tuple(
         visual
@@ -41,12 +41,12 @@ def bones(skeleton: Skeleton) -> tuple[Visual, ...]:
 
 
 def _rods(skeleton: Skeleton, segment: Segment, scale: float) -> Iterator[Visual]:
-    """A rod to every joint outboard; the last segments of a limb end at their far side."""
+    """Yield a rod to every outboard joint, or through the center of mass of the last segment of a limb."""
     color = next((color for side, color in SIDE_COLORS.items() if segment.name.startswith(side)), BONE)
     connections: list[Joint | Weld] = [*skeleton.joints, *skeleton.welds]
     outboard = [c for c in connections if c.parent == segment.name]
     for connection in outboard:
-        if max(map(abs, connection.origin)) > SHORTEST_ROD * scale:
+        if max(map(abs, connection.origin)) > MIN_ROD * scale:
             yield capsule(segment.name, f"rod_{connection.child}", ORIGIN, connection.origin, ROD_RADIUS * scale, color)
     if outboard:
         return
@@ -63,7 +63,7 @@ def _joint(skeleton: Skeleton, segment: Segment, scale: float) -> Iterator[Visua
     joint = skeleton.inboard(segment.name)
     if not isinstance(joint, Joint):
         return
-    # The toes' joint lies lower than the ball of the others is thick.
+    # The toes' joint is closer to the ground than the radius of the other joints.
     radius = min(JOINT_RADIUS * scale, float(skeleton.origins[segment.name][2]))
     yield ball(segment.name, "joint", ORIGIN, radius, JOINT)
     x, y, z = (0.5 * AXIS_LENGTH * scale * component for component in joint.axis)

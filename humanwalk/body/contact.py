@@ -1,9 +1,8 @@
-"""How the feet meet the ground: two interchangeable sets of collision shapes under each foot, and a sole of points.
+"""Contact geometry of the feet: two alternative sets of collision shapes under each foot, and the points of the soles.
 
-The point set is six small spheres a foot, the hydroelastic set three compliant boxes. Both are in
-the model file, told apart by `POINT_SET` and `HYDRO_SET` in their names; a diagram keeps one set
-and filters the other out, or both where the thesis' own contact law acts on the lower faces of the
-boxes. Every shape's lowest points lie on the sole plane.
+The point set is six small spheres per foot, the hydroelastic set three compliant boxes. Both are in the model file,
+distinguished by `POINT_SET` and `HYDRO_SET` in their names; a diagram filters out the set that it does not use, or both
+if the thesis' contact law acts on the lower faces of the boxes. The lowest points of all shapes are on the sole plane.
 """
 
 from __future__ import annotations
@@ -22,22 +21,22 @@ HYDRO_SET = "_hydro_"
 """Part of the name of every collision shape of the hydroelastic set."""
 
 FRICTION = 0.7
-"""Coulomb coefficient, static and dynamic (thesis 2.5)."""
+"""Coulomb coefficient of the soles, static and dynamic: that of two soles on each other (thesis 2.5)."""
 DISSIPATION = 1.0
 """Hunt-Crossley dissipation [s/m] (our choice)."""
 RELAXATION_TIME = 0.02
 """Relaxation time of the linear Kelvin-Voigt law that Drake's SAP solver uses [s] (our choice)."""
 POINT_STIFFNESS = 2.0e5
-"""Stiffness of one sphere [N/m] (our choice): quiet standing on twelve sinks 0.3 mm into rigid
-ground. The thesis' normal stiffness of 0 would sink at 1.9 m/s (erratum E8)."""
+"""Point-contact stiffness of one sphere [N/m] (our choice): in quiet standing twelve spheres sink 0.3 mm into rigid
+ground. With the thesis' normal stiffness of 0 they would sink at 1.9 m/s (erratum E8)."""
 HYDRO_MODULUS = 2.0e7
-"""Hydroelastic modulus of the soles [Pa] (our choice); below 1e7 Pa the body tips over."""
+"""Hydroelastic modulus of the soles [Pa] (our choice); the body tips over below 1e7 Pa."""
 HYDRO_RESOLUTION = 0.05
-"""Mesh resolution hint of the soles [m] (Drake ignores it for boxes)."""
+"""Mesh resolution hint of the soles [m]; Drake ignores it for boxes."""
 
 SOLE_GRID = (2, 2)
-"""Contact points along and across the lower face of each box that the asperity law acts on: its corners (our choice).
-A finer grid carries less at its rim: it tilts far before the centre of pressure comes there (docs/contact.md)."""
+"""Numbers of points along x and y of the lower face of each box, for the asperity law: its corners (our choice). A
+finer grid is softer at its rim, and tilts far before the center of pressure reaches it (docs/contact.md)."""
 
 SPHERE_RADIUS = 0.012
 """Radius of the contact spheres of the reference human [m]."""
@@ -47,15 +46,15 @@ SOLE_THICKNESS = 0.02
 
 @dataclass(frozen=True)
 class SolePart:
-    """The sole under one body of a foot of the reference human; x counts from the ankle joint.
+    """The sole below one body of a foot of the reference human; x is measured from the ankle joint.
 
     Attributes:
         name: Part of the foot.
         body: Body name without the leg, e.g. `FootToes`.
-        x: Back and front end [m].
-        width: Breadth [m].
-        spheres_x: Where the two contact spheres are [m].
-        spheres_half_gap: Their distance from the middle of the foot [m].
+        x: Rear and front end [m].
+        width: Width [m].
+        spheres_x: Position of the two contact spheres [m].
+        spheres_half_gap: Distance of the spheres from the middle of the foot [m].
     """
 
     name: str
@@ -75,7 +74,7 @@ SOLE_PARTS = (
 
 @dataclass(frozen=True)
 class ContactSphere:
-    """A point-contact sphere: centre in the body frame p_BoS_B [m] and radius [m]."""
+    """A point-contact sphere: center in the body frame p_BoS_B [m] and radius [m]."""
 
     name: str
     body: str
@@ -85,7 +84,7 @@ class ContactSphere:
 
 @dataclass(frozen=True)
 class ContactBox:
-    """A compliant box: centre in the body frame p_BoS_B [m] and edges along x, y, z [m]."""
+    """A compliant box: center in the body frame p_BoS_B [m] and edges along x, y, z [m]."""
 
     name: str
     body: str
@@ -95,12 +94,12 @@ class ContactBox:
 
 @dataclass(frozen=True)
 class SolePatch:
-    """A flat piece of one body's sole, shared out to contact points.
+    """A flat part of one body's sole, represented by contact points.
 
     Attributes:
         body: Body name.
         p_BoQ_B: Contact points [m], shape (k, 3).
-        area: That belongs to each of them [m2], shape (k,).
+        area: Area of each point [m2], shape (k,).
     """
 
     body: str
@@ -109,7 +108,7 @@ class SolePatch:
 
 
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
-    """The point set: medial and lateral spheres under heel, ball and toes of both feet."""
+    """Return the point set: medial and lateral spheres below heel, ball and toes of both feet."""
     scale = skeleton.stature / REFERENCE_STATURE
     radius = SPHERE_RADIUS * scale
     spheres = []
@@ -131,7 +130,7 @@ def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
 
 
 def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
-    """The hydroelastic set: one box under hind-foot, mid-foot and toes of both feet."""
+    """Return the hydroelastic set: one box below hindfoot, midfoot and toes of both feet."""
     scale = skeleton.stature / REFERENCE_STATURE
     height = SOLE_THICKNESS * scale
     boxes = []
@@ -151,7 +150,7 @@ def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
 
 
 def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
-    """The polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes."""
+    """Return the polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes."""
     return tuple(
         rectangle_patch(box.body, box.center, box.size, SOLE_GRID)
         for box in contact_boxes(skeleton)
@@ -160,13 +159,13 @@ def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
 
 
 def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, int]) -> SolePatch:
-    """The lower face of a box: a grid of points from rim to rim, each with the rectangle of the face around it.
+    """Return the lower face of a box: a grid of points from rim to rim, each with the area around it.
 
     Args:
-        body: that the box belongs to.
-        center: of the box in the body frame [m].
-        size: its edges along the body's x, y, z [m].
-        grid: how many points along x and y, 2 or more.
+        body: Body of the box.
+        center: Center of the box in the body frame [m].
+        size: Edges along the body's x, y, z [m].
+        grid: Numbers of points along x and y, at least 2.
     """
     (x, along), (y, across) = (
         _rim_to_rim(middle, edge, n) for middle, edge, n in zip(center[:2], size[:2], grid, strict=True)
@@ -176,14 +175,14 @@ def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, 
 
 
 def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[Array, Array]:
-    """n points along an edge from end to end, and the length around each: at the ends, half of that between."""
+    """Points along an edge from end to end, and the length around each, which is half at both ends; shape (n,) each."""
     length = np.full(n, edge / (n - 1))
     length[[0, -1]] *= 0.5
     return middle + edge * np.linspace(-0.5, 0.5, n), length
 
 
 def _in_body(skeleton: Skeleton, side: str, body: str, p_SoleP: Vector3) -> Vector3:
-    """A point given from the sole below the ankle, seen from the body's origin."""
+    """Convert a point relative to the sole below the ankle to the body frame."""
     offset = skeleton.origins[body] - skeleton.origins[f"{side}Leg_Ankle"]
     x, y, z = p_SoleP - offset
     return (float(x), float(y), float(z - skeleton.sole_height))

@@ -1,11 +1,10 @@
-"""Where each actuated joint stands in a plant's state.
+"""Indices of the actuated joints in a plant's state.
 
-Drake orders positions by a depth-first walk of the tree, actuators by their order in the model file: for this
-body the two differ from the shoulder girdle on.
+Drake orders positions by a depth-first traversal of the tree and actuators by their order in the model file; in this
+body the two orders differ from the shoulder girdle on.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
@@ -20,11 +19,13 @@ class JointMap:
     """Actuated joints of a plant, in actuator order.
 
     Attributes:
-        names: joint names, n of them.
-        q, v: places of the joints in the positions and in the velocities, shape (n,).
+        names: Joint names, n of them.
+        q: Indices of the joints in the positions, shape (n,).
+        v: Indices of the joints in the velocities, shape (n,).
         num_positions: nq of the plant; a state is [q; v].
-        lower, upper: joint ranges [rad], shape (n,).
-        effort_limits: [N m], shape (n,).
+        lower: Lower joint limits [rad], shape (n,).
+        upper: Upper joint limits [rad], shape (n,).
+        effort_limits: Effort limits of the actuators [N m], shape (n,).
     """
 
     names: tuple[str, ...]
@@ -37,7 +38,7 @@ class JointMap:
 
     @staticmethod
     def of(plant: MultibodyPlant) -> "JointMap":
-        """The map of a finalised plant with one-degree-of-freedom actuated joints."""
+        """Return the map of a finalized plant with actuated joints of one degree of freedom."""
         actuators = [plant.get_joint_actuator(JointActuatorIndex(i)) for i in range(plant.num_actuators())]
         joints = [actuator.joint() for actuator in actuators]
         return JointMap(
@@ -50,24 +51,17 @@ class JointMap:
             effort_limits=np.array([actuator.effort_limit() for actuator in actuators]),
         )
 
-    @cached_property
-    def _places_of_v(self) -> Indices:
-        return self.num_positions + self.v
-
     def positions(self, state: Array) -> Array:
-        """Joint angles [rad] out of a plant state [q; v] or out of q alone, shape (n,), or of many, (..., n)."""
-        # A quarter of the time of an index with an ellipsis; the actuators ask in every step.
-        angles: Array = state.take(self.q, axis=-1)
-        return angles
+        """Return the joint angles [rad] of plant states [q; v] or positions q, shape (..., n)."""
+        return state[..., self.q]
 
     def velocities(self, state: Array) -> Array:
-        """Joint velocities [rad/s] out of a plant state [q; v], shape (n,), or of many, (..., n)."""
-        rates: Array = state.take(self._places_of_v, axis=-1)
-        return rates
+        """Return the joint velocities [rad/s] of plant states [q; v], shape (..., n)."""
+        return state[..., self.num_positions + self.v]
 
 
 def base_first_mass_matrix(plant: MultibodyPlant, context: Context) -> Array:
-    """Mass matrix with the floating base's rows first, then the joints in actuator order; shape (6 + n, 6 + n)."""
+    """Return the mass matrix with the floating base first, then the joints in actuator order; shape (6 + n, 6 + n)."""
     M = plant.CalcMassMatrix(context)
     joints = JointMap.of(plant)
     order = np.concatenate((np.setdiff1d(np.arange(M.shape[0]), joints.v), joints.v))

@@ -1,6 +1,6 @@
-"""Limbs as data: which joint and which body of the model plays which part.
+"""Limbs as data: the joint or body of the model for each anatomical role.
 
-Code outside `humanwalk.body` names joints and bodies by these parts, so that another limb needs no new strings.
+Code outside `humanwalk.body` refers to joints and bodies by these roles.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class Leg:
     Attributes:
         side: Right or Left.
         hip_flexion, hip_abduction, hip_rotation, knee, ankle, ankle_inversion, ankle_rotation, midfoot, toes: Joints;
-            positive as `Joint.motion` says.
+            positive in the direction of `Joint.motion`.
         thigh, shank, hindfoot, forefoot, toe_segment: Bodies.
         sole: Frame on the sole below the ankle, parallel to the hindfoot's.
     """
@@ -42,7 +42,7 @@ class Leg:
 
     @staticmethod
     def of(side: Side) -> Leg:
-        """The leg of a side."""
+        """Return the leg of a side."""
         joints = (
             *("Femur", "FemurSide", "FemurTwist", "Tibia", "Ankle", "AnkleRoll", "AnkleTwist"),
             *("FootMiddle", "FootToes"),
@@ -52,7 +52,7 @@ class Leg:
 
     @property
     def chain(self) -> tuple[str, ...]:
-        """The seven joints from hip to ankle, which place the sole."""
+        """The seven joints from hip to ankle, which determine the pose of the sole."""
         return (*self.hip, self.knee, *self.ankle_joints)
 
     @property
@@ -78,7 +78,7 @@ class Leg:
 
 @dataclass(frozen=True)
 class Arm:
-    """One arm: names of its joints, from the shoulder outward; positive as `Joint.motion` says."""
+    """One arm: names of its joints, from the shoulder outward; positive in the direction of `Joint.motion`."""
 
     side: Side
     shoulder_flexion: str
@@ -89,7 +89,7 @@ class Arm:
 
     @staticmethod
     def of(side: Side) -> Arm:
-        """The arm of a side."""
+        """Return the arm of a side."""
         joints = ("Shoulder", "ShoulderSide", "ShoulderTwist", "Elbow", "Wrist")
         return Arm(side, *(f"{side}Arm{joint}Motion" for joint in joints))
 
@@ -109,7 +109,7 @@ HEAD = "Head"
 
 
 def other_side(side: Side) -> Side:
-    """The other side of the body."""
+    """Return the opposite side."""
     return "Left" if side == "Right" else "Right"
 
 
@@ -142,7 +142,7 @@ JOINT_GROUPS: dict[str, tuple[str, ...]] = {
 
 
 def group_of(joint: str) -> str:
-    """The group of `JOINT_GROUPS` that a joint belongs to (KeyError if there is none)."""
+    """Return the group of `JOINT_GROUPS` of a joint (KeyError if there is none)."""
     return _GROUP_BY_JOINT[joint]
 
 

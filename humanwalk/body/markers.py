@@ -1,9 +1,9 @@
-"""Markers on anatomical landmarks, as a motion-capture laboratory would stick them on.
+"""Motion-capture markers on anatomical landmarks.
 
-The 39 of the Plug-in-Gait full-body model have its names (first letter R or L for the side); the medial ones of knee,
-ankle and elbow, the heads of the first and fifth metatarsals and the tip of the shoe, which Plug-in-Gait has not, are
-named in its manner. Positions are on the skin of the reference human (`humanwalk.body.visuals`) or at the level of its
-joint centres, and grow with stature.
+The 39 markers of the Plug-in-Gait full-body model have its names (first letter R or L for the side). The medial markers
+of knee, ankle and elbow, those on the heads of the first and fifth metatarsals and on the tip of the shoe are absent
+from Plug-in-Gait; their names follow the same pattern. Positions are on the skin of the reference human
+(`humanwalk.body.visuals`) or at the level of its joint centers, and are proportional to stature.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ class Marker:
     """A point on a body.
 
     Attributes:
-        name: Plug-in-Gait name, e.g. `RASI`, or one in its manner.
-        body: Name of the segment it is stuck to.
-        position: In the body frame, p_BoM_B [m].
-        landmark: What it is stuck to.
-        plug_in_gait: Whether Plug-in-Gait has it.
+        name: Plug-in-Gait name, e.g. `RASI`, or one of the same pattern.
+        body: Name of the segment.
+        position: Position in the body frame, p_BoM_B [m].
+        landmark: Anatomical landmark.
+        plug_in_gait: Whether the marker is in Plug-in-Gait.
     """
 
     name: str
@@ -33,20 +33,20 @@ class Marker:
     plug_in_gait: bool = True
 
     def mirrored(self) -> Marker:
-        """The left twin of a right marker."""
+        """Return the left counterpart of a right marker."""
         x, y, z = self.position
         return Marker(
             f"L{self.name[1:]}", self.body.replace("Right", "Left"), (x, -y, z), self.landmark, self.plug_in_gait
         )
 
     def scaled(self, factor: float) -> Marker:
-        """The same marker on a body with every length multiplied by `factor`."""
+        """Return the marker on a body with every length multiplied by a factor."""
         x, y, z = self.position
         return Marker(self.name, self.body, (x * factor, y * factor, z * factor), self.landmark, self.plug_in_gait)
 
 
 def markers(skeleton: Skeleton) -> tuple[Marker, ...]:
-    """Every marker of a body, head first, right before left."""
+    """Return every marker of a body, from the head down, right before left."""
     scale = skeleton.stature / REFERENCE_STATURE
     paired = [side for marker in _right() for side in (marker, marker.mirrored())]
     return tuple(marker.scaled(scale) for marker in (*paired, *_middle()))
@@ -58,7 +58,7 @@ def _middle() -> tuple[Marker, ...]:
         Marker("T10", "Thoracic_10_12", (-0.110, 0.0, 0.020), "spinous process of the 10th thoracic vertebra"),
         Marker("CLAV", "Thoracic_1_3", (0.070, 0.0, 0.040), "jugular notch, where the clavicles meet the sternum"),
         Marker("STRN", "Ribs", (0.111, 0.0, -0.020), "xiphoid process of the sternum"),
-        Marker("RBAK", "Ribs", (-0.100, -0.080, 0.080), "right shoulder blade; has no left twin, to tell the sides"),
+        Marker("RBAK", "Ribs", (-0.100, -0.080, 0.080), "right shoulder blade; right only, to distinguish the sides"),
     )
 
 

@@ -1,7 +1,7 @@
-"""Writes a skeleton as an MJCF model, for MuJoCo: the same bodies, joints and contact spheres as the SDF model.
+"""MJCF model of a skeleton, for MuJoCo: the same bodies, joints and contact spheres as in the SDF model.
 
-Mass matrix and bias forces are the same to rounding. Contact is not: MuJoCo's is soft in its own way, set here to the
-relaxation time that the SDF model has. Torque limits are the motors' control ranges.
+Mass matrix and bias forces are equal to rounding. Contact is not: MuJoCo's soft contact has the relaxation time of the
+SDF model. Torque limits are the control ranges of the motors.
 """
 
 import xml.etree.ElementTree as ET
@@ -11,20 +11,18 @@ from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
 from humanwalk.body.skeleton import SIDES, Joint, Segment, Skeleton
 from humanwalk.body.visuals import Visual
-
-GRAVITY = 9.81
-"""Drake's own [m/s2]."""
+from humanwalk.quantity import GRAVITY
 
 
 def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
-    """The MJCF model file of a skeleton on level ground.
+    """Return the MJCF model file of a skeleton on level ground.
 
-    Body frames are those of the SDF model: at the inboard joint, parallel to the world in neutral standing. Sites
-    `RightLeg_Sole` and `LeftLeg_Sole` lie on the sole planes below the ankles. Motors are in the skeleton's order of
-    joints and named like them. Soles touch the ground and nothing else.
+    Body frames are those of the SDF model: at the inboard joint, parallel to the world in neutral standing. The sites
+    `RightLeg_Sole` and `LeftLeg_Sole` are on the sole planes below the ankles. Motors have the order and the names of
+    the joints. Soles collide with the ground only.
 
     Args:
-        skeleton: Whose body.
+        skeleton: The body.
         look: A clothed person, or rods between joints.
 
     Returns:
@@ -32,7 +30,7 @@ def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
     """
     mujoco = ET.Element("mujoco", {"model": MODEL_NAME})
     mujoco.append(ET.Comment(HEADER))
-    # Capitals: rotations about fixed axes, as in SDF.
+    # Capital letters stand for rotations about fixed axes, as in SDF.
     ET.SubElement(mujoco, "compiler", {"angle": "radian", "eulerseq": "XYZ", "inertiafromgeom": "false"})
     ET.SubElement(
         mujoco,

@@ -1,13 +1,13 @@
-"""Numbers as the model files have them, so that all formats hold the same ones."""
+"""Numbers as text, the same in all formats of model files."""
 
 from collections.abc import Iterable
 
 
 def numbers(values: Iterable[float]) -> str:
-    """Several numbers with blanks between."""
+    """Return numbers separated by blanks."""
     return " ".join(number(v) for v in values)
 
 
 def number(value: float) -> str:
-    """One number; ten digits keep the arithmetic and drop the rounding noise, "+ 0.0" turns -0 into 0."""
+    """Return a number with ten digits, without rounding noise; "+ 0.0" turns -0 into 0."""
     return f"{round(float(value), 12) + 0.0:.10g}"

@@ -1,8 +1,7 @@
-"""The joints under the names of OpenSim's coordinates, and OpenSim's axes.
+"""OpenSim's names and signs of the joint angles, and its axes.
 
-Names and signs are those of the full-body model of Rajagopal et al. (2016): knee flexion is positive (in the older
-gait2392 it is negative). Every joint that the model has not keeps its own name. OpenSim's ground is x forward, y up,
-z right.
+They are those of the full-body model of Rajagopal et al. (2016); knee flexion is positive (negative in the older
+gait2392). Joints absent from that model keep their names. The axes of OpenSim's ground are x forward, y up, z right.
 """
 
 import numpy as np
@@ -31,19 +30,20 @@ COORDINATES: dict[str, tuple[str, float]] = {
     for side in SIDES
     for motion, (coordinate, sign) in _RIGHT_AND_LEFT.items()
 }
-"""OpenSim's coordinate of a joint, and the factor from the joint's angle to it."""
+"""OpenSim's coordinate of each joint, and the factor from the joint's angle to it."""
 
 SPINE_COORDINATES: dict[str, tuple[tuple[str, ...], float]] = {
     "lumbar_extension": (SPINE_PITCH_JOINTS, -1.0),
     "lumbar_bending": (SPINE_ROLL_JOINTS, 1.0),
     "lumbar_rotation": (SPINE_YAW_JOINTS, 1.0),
 }
-"""OpenSim's one joint of the back: the joints whose angles it sums, exact about one axis at a time, and the factor."""
+"""OpenSim's coordinates of its single back joint: the joints whose angles they sum (exact for one axis at a time), and
+the factor."""
 
 PELVIS_ROTATIONS = ("pelvis_tilt", "pelvis_list", "pelvis_rotation")
-"""Turns of the pelvis in OpenSim's ground, about its own z, then x, then y."""
+"""Rotations of the pelvis in OpenSim's ground, about its own z, then x, then y."""
 PELVIS_TRANSLATIONS = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
-"""Place of the pelvis' origin in OpenSim's ground: here midway between the hip joints."""
+"""Position of the pelvis' origin, midway between the hip joints, in OpenSim's ground."""
 
 R_OW: Array = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """From W (x forward, y left, z up) to OpenSim's ground O (x forward, y up, z right)."""

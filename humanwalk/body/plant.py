@@ -15,21 +15,21 @@ from humanwalk.quantity import quantity
 
 PACKAGE = "humanwalk"
 HUMAN_URL = "package://humanwalk/models/sdf/human.sdf"
-"""The reference human's model file, for a parser that `register_package` was called on."""
+"""Model file of the reference human, for a parser after `register_package`."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """Whose body walks: the reference human at another size."""
+    """The body that walks: the reference human, scaled."""
 
     mass: float = quantity(REFERENCE_MASS, "kg", *MASS_RANGE_KG)
-    """Body mass; the thesis' subject has 70 kg (3.3.1)."""
+    """Body mass (thesis 3.3.1: 70 kg)."""
 
     stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
-    """Standing height; the thesis' subject has 1.75 m (3.3.1)."""
+    """Standing height (thesis 3.3.1: 1.75 m)."""
 
     look: Look = "person"
-    """What one sees of it: a clothed person, or rods between joints with their axes and the contact points."""
+    """Look of the body: a clothed person, or rods between joints with their axes and the contact spheres."""
 
     @property
     def skeleton(self) -> Skeleton:
@@ -40,12 +40,12 @@ class Subject:
 
 
 def register_package(package_map: PackageMap) -> None:
-    """Make `package://humanwalk/...` name this package's files."""
+    """Map `package://humanwalk/...` to the files of this package."""
     package_map.Add(PACKAGE, str(Path(__file__).parent.parent))
 
 
 def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
-    """Parse the subject's model into a plant that is not finalised, strictly, and return its instance."""
+    """Parse the subject's model, strictly, into a plant that is not finalized, and return its instance."""
     parser = Parser(plant)
     parser.SetStrictParsing()
     register_package(parser.package_map())
@@ -58,7 +58,7 @@ def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
 
 @cache
 def kinematics_plant(subject: Subject) -> MultibodyPlant:
-    """A finalised plant of the subject alone, without geometry roles, for kinematics and inertia in contexts."""
+    """Return a finalized plant of the subject alone, without geometry, for kinematics and inertia."""
     plant = MultibodyPlant(time_step=0.0)
     add_human(plant, subject)
     plant.Finalize()

@@ -1,6 +1,6 @@
-"""The solids that stand for the mass of a body segment: a box and a circular cylinder.
+"""Solids that represent the mass of a body segment: a box and a circular cylinder.
 
-They are inertia shapes, not flesh: the densities they imply run from 0.2 to 1.6 g/cm3 (erratum E7).
+They define inertia, not appearance: their densities are 0.2 to 1.6 g/cm3 (erratum E7).
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ class Box:
         return np.array([self.depth, self.width, self.height])
 
     def inertia(self, mass: float) -> Array:
-        """Principal moments about the centre [kg m2], shape (3,), for a mass [kg].
+        """Return the principal moments about the center [kg m2], shape (3,), for a mass [kg].
 
-        m (a2 + b2) / 12; equation 3-1 prints 1/2 where Table 3.1 used 1/12 (erratum E1).
+        m (a2 + b2) / 12; Eq 3-1 has 1/2, Table 3.1 was calculated with 1/12 (erratum E1).
         """
         squares = self.extent**2
         return mass / 12.0 * (squares.sum() - squares)
 
     def scaled(self, factor: float) -> Box:
-        """The same box with every length multiplied by `factor`."""
+        """Return the box with every length multiplied by a factor."""
         return Box(self.depth * factor, self.width * factor, self.height * factor)
 
 
@@ -54,7 +54,7 @@ class Cylinder:
     Attributes:
         radius: Radius [m].
         length: Length along the axis [m].
-        axis: Which body axis the cylinder lies along.
+        axis: Axis of the body frame that the cylinder is parallel to.
     """
 
     radius: float
@@ -67,17 +67,17 @@ class Cylinder:
         return np.array([self.length if a == self.axis else 2.0 * self.radius for a in "xyz"])
 
     def inertia(self, mass: float) -> Array:
-        """Principal moments about the centre [kg m2], shape (3,), for a mass [kg].
+        """Return the principal moments about the center [kg m2], shape (3,), for a mass [kg].
 
-        Axial m r2 / 2, transverse m (3 r2 + l2) / 12. Equation 3-2 prints a thin rod, whose missing
-        3 r2 makes two bodies of Table 3.2 impossible (errata E3, E4).
+        Axial m r2 / 2, transverse m (3 r2 + l2) / 12. Eq 3-2 is that of a thin rod; without 3 r2 two bodies of
+        Table 3.2 violate the triangle inequality (errata E3, E4).
         """
         axial = mass * self.radius**2 / 2.0
         transverse = mass * (3.0 * self.radius**2 + self.length**2) / 12.0
         return np.array([axial if a == self.axis else transverse for a in "xyz"])
 
     def scaled(self, factor: float) -> Cylinder:
-        """The same cylinder with every length multiplied by `factor`."""
+        """Return the cylinder with every length multiplied by a factor."""
         return Cylinder(self.radius * factor, self.length * factor, self.axis)
 
 

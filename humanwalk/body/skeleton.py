@@ -1,8 +1,7 @@
-"""What a body is made of: segments, the joints between them, and the tree they form.
+"""A body as data: segments, the joints between them, and the tree that they form.
 
-Frames: every segment's frame sits at its inboard joint and is parallel to the world frame W (x
-forward, y left, z up) in neutral standing, where all joint angles are zero and both soles rest on
-z = 0.
+The frame of every segment is at its inboard joint, parallel to the world frame W (x forward, y left, z up) in neutral
+standing, where all joint angles are zero and both soles are on z = 0.
 """
 
 from __future__ import annotations
@@ -33,10 +32,10 @@ class Segment:
 
     Attributes:
         name: The thesis' name of the body, e.g. `RightLeg_Tibia`.
-        shape: The uniform solid that gives the inertia, centred on the centre of mass.
+        shape: Uniform solid with the inertia, centered on the center of mass.
         mass: Mass [kg].
-        com: Centre of mass in the body frame, p_BoBcm_B [m].
-        source: Where shape and mass come from.
+        com: Center of mass in the body frame, p_BoBcm_B [m].
+        source: Source of shape and mass.
     """
 
     name: str
@@ -47,16 +46,16 @@ class Segment:
 
     @property
     def inertia(self) -> Array:
-        """Principal moments about the centre of mass, I_BBcm_B [kg m2], shape (3,)."""
+        """Principal moments of inertia about the center of mass, I_BBcm_B [kg m2], shape (3,)."""
         return self.shape.inertia(self.mass)
 
     def mirrored(self) -> Segment:
-        """The left twin of a right segment (reflected in the plane y = 0)."""
+        """Return the left counterpart of a right segment, mirrored in the plane y = 0."""
         x, y, z = self.com
         return replace(self, name=_left_name(self.name), com=(x, -y + 0.0, z))
 
     def scaled(self, length: float, mass: float) -> Segment:
-        """This segment with lengths and mass multiplied by two factors."""
+        """Return the segment with its lengths and its mass multiplied by two factors."""
         return replace(
             self,
             shape=self.shape.scaled(length),
@@ -71,15 +70,15 @@ class Joint:
 
     Attributes:
         name: The thesis' name of the motion, e.g. `RightLegTibiaMotion`.
-        motion: What a positive angle is called, e.g. "knee flexion".
+        motion: Name of the motion to positive angles, e.g. "knee flexion".
         parent: Name of the segment inboard of the joint.
         child: Name of the segment outboard; its frame's origin lies on the joint axis.
         axis: Unit vector of the axis, in parent and child frame alike.
         origin: Origin of the child frame in the parent frame, p_PC [m].
         range_rad: Lower and upper limit of the angle [rad].
-        range_source: Where the range comes from.
-        effort_limit_N_m: Greatest actuator torque [N m].
-        effort_source: Where the torque limit comes from.
+        range_source: Source of the range.
+        effort_limit_N_m: Largest actuator torque [N m].
+        effort_source: Source of the torque limit.
         rotor_inertia: Reflected inertia of the actuator, gear ratio 1 [kg m2].
         damping: Viscous damping of the joint [N m s/rad].
     """
@@ -98,9 +97,9 @@ class Joint:
     damping: float
 
     def mirrored(self) -> Joint:
-        """The left twin of a right joint, positive in the same anatomical sense.
+        """Return the left counterpart of a right joint, positive in the same anatomical direction.
 
-        A rotation axis is a pseudovector: reflected in y = 0 it keeps y and turns x and z round.
+        A rotation axis is a pseudovector: mirrored in y = 0 it keeps y and reverses x and z.
         """
         x, y, z = self.origin
         ax, ay, az = self.axis
@@ -114,10 +113,10 @@ class Joint:
         )
 
     def scaled(self, length: float, mass: float) -> Joint:
-        """This joint on a body scaled by two factors.
+        """Return the joint of a body with lengths and masses multiplied by two factors.
 
-        Torques grow with m L, times with sqrt(L): the scaled body, walking at the same Froude
-        number, meets the same fraction of its torque limits. Angles stay.
+        Torques are proportional to m L and times to sqrt(L), so that a scaled body uses the same fraction of its torque
+        limits at the same Froude number. Angles do not change.
         """
         return replace(
             self,
@@ -148,7 +147,7 @@ class Weld:
         return f"{self.child}_Weld"
 
     def scaled(self, length: float) -> Weld:
-        """This weld with lengths multiplied by a factor."""
+        """Return the weld with its lengths multiplied by a factor."""
         return replace(self, origin=_times(self.origin, length))
 
 
@@ -169,11 +168,10 @@ class Skeleton:
     root_height: float
 
     def __post_init__(self) -> None:
-        """Check that the tree is one.
+        """Check that the segments form a tree.
 
         Raises:
-            ValueError: A segment other than the root has no inboard joint, or one that is listed
-                after it.
+            ValueError: A segment other than the root has no inboard joint, or one whose parent is listed after it.
         """
         seen: set[str] = set()
         for segment in self.segments:
@@ -199,19 +197,19 @@ class Skeleton:
         return {j.name: j for j in self.joints}
 
     def segment(self, name: str) -> Segment:
-        """The segment called `name` (KeyError if there is none)."""
+        """Return the segment with a name (KeyError if there is none)."""
         return self._segment_by_name[name]
 
     def joint(self, name: str) -> Joint:
-        """The revolute joint called `name` (KeyError if there is none)."""
+        """Return the revolute joint with a name (KeyError if there is none)."""
         return self._joint_by_name[name]
 
     def inboard(self, segment_name: str) -> Joint | Weld | None:
-        """The joint or weld that carries a segment; None for the floating root."""
+        """Return the inboard joint or weld of a segment; None for the floating root."""
         return self._inboard_by_child.get(segment_name)
 
     def tree(self) -> Iterator[tuple[Segment, Joint | Weld | None]]:
-        """Every segment with its inboard joint, parents first."""
+        """Yield every segment with its inboard joint or weld, parents first."""
         return ((s, self.inboard(s.name)) for s in self.segments)
 
     @cached_property
@@ -232,18 +230,9 @@ class Skeleton:
 
     @property
     def com(self) -> Array:
-        """Centre of mass in neutral standing, p_WC [m], shape (3,)."""
+        """Center of mass in neutral standing, p_WC [m], shape (3,)."""
         moment = sum((s.mass * (self.origins[s.name] + s.com) for s in self.segments), np.zeros(3))
         return np.asarray(moment / self.total_mass, dtype=np.float64)
-
-    @property
-    def inertia(self) -> Array:
-        """Whole-body inertia about the centre of mass in neutral standing [kg m2], shape (3, 3)."""
-        total = np.zeros((3, 3))
-        for s in self.segments:
-            r = self.origins[s.name] + s.com - self.com
-            total += np.diag(s.inertia) + s.mass * (r @ r * np.eye(3) - np.outer(r, r))
-        return total
 
     @property
     def stature(self) -> float:
@@ -272,14 +261,13 @@ class Skeleton:
         return float(self.origins["LeftLeg_Femur_Thigh"][1])
 
     def scaled(self, mass: float, stature: float) -> Skeleton:
-        """The same person at another body mass [kg] and stature [m].
+        """Return the skeleton with another body mass [kg] and stature [m].
 
-        One factor for all lengths, one for all masses; inertias then go with m L2, torque limits
-        with m L (see `Joint.scaled`).
+        All lengths are multiplied by one factor and all masses by another; inertias are then proportional to m L2,
+        torque limits to m L (see `Joint.scaled`).
 
         Raises:
-            ParameterError: (a ValueError) `mass` outside 30..200 kg or `stature` outside
-                1.2..2.2 m, or not a number.
+            ParameterError: `mass` is outside `MASS_RANGE_KG`, or `stature` outside `STATURE_RANGE_M`.
         """
         require_in_range("mass", mass, "kg", *MASS_RANGE_KG)
         require_in_range("stature", stature, "m", *STATURE_RANGE_M)

@@ -1,8 +1,8 @@
-"""What the body looks like: a clothed person made of rounded primitives on the skeleton's frames.
+"""The look `person`: a clothed person made of rounded primitives in the body frames.
 
-The looks follow the reference human and grow with stature; they weigh nothing and touch nothing.
-Limbs are written once, for the right side, and mirrored. Balls at knees and elbows keep the limbs
-whole when they bend. Left is orange and right is blue (shoes, sleeve cuffs, trouser stripes).
+The primitives fit the reference human and are scaled with stature; they have neither mass nor contact. Limbs are
+defined for the right side and mirrored. Balls at knees and elbows close the gaps of bent limbs. Left is orange and
+right is blue (shoes, sleeve cuffs, trouser stripes).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ TROUSERS: Color = (0.24, 0.30, 0.41)
 BELT: Color = (0.10, 0.08, 0.07)
 SOLE: Color = (0.30, 0.31, 0.33)
 SIDE_COLORS: dict[Side, Color] = {"Right": (0.10, 0.42, 0.70), "Left": (0.87, 0.40, 0.10)}
-"""Colour of shoes, cuffs and stripes; blue and orange stay apart for colour-blind eyes."""
+"""Color of shoes, cuffs and stripes; blue and orange are distinct in color blindness."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,12 @@ class Visual:
     """One visible primitive.
 
     Attributes:
-        body: Name of the segment it belongs to.
-        part: What it shows; unique on its body.
+        body: Name of the segment.
+        part: Part of the look, unique on its body.
         primitive: SDFormat name of the shape.
         size: Ellipsoid: three radii; box: three edges; capsule and cylinder: radius, length
             along z (a capsule's without its caps) [m].
-        center: Centre in the body frame [m].
+        center: Center in the body frame [m].
         rpy: Roll, pitch, yaw in the body frame [rad].
         color: Red, green, blue, 0 to 1.
     """
@@ -60,7 +60,7 @@ class Visual:
         return f"{self.body}_{self.part}"
 
     def mirrored(self) -> Visual:
-        """The left twin of a right part, in the left colour where the right one had its own."""
+        """Return the left counterpart of a right part, in the color of its side."""
         x, y, z = self.center
         roll, pitch, yaw = self.rpy
         own = self.color == SIDE_COLORS["Right"]
@@ -74,7 +74,7 @@ class Visual:
         )
 
     def scaled(self, factor: float) -> Visual:
-        """The same part with every length multiplied by `factor`."""
+        """Return the part with every length multiplied by a factor."""
         x, y, z = self.center
         return replace(
             self,
@@ -84,7 +84,7 @@ class Visual:
 
 
 def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
-    """Everything one sees of a body, in body frames, scaled to its stature."""
+    """Return all primitives of a body, in body frames, scaled to its stature."""
     scale = skeleton.stature / REFERENCE_STATURE
     paired = [*_right_trunk_half(), *_right_face_half(), *_right_leg(), *_right_arm()]
     middle = [*_trunk(), *_head()]
@@ -92,20 +92,20 @@ def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
 
 
 def ellipsoid(body: str, part: str, center: Vector3, radii: Vector3, color: Color, rpy: Vector3 = (0, 0, 0)) -> Visual:
-    """An ellipsoid by its centre and radii."""
+    """Return an ellipsoid by its center and radii."""
     return Visual(body, part, "ellipsoid", radii, center, rpy, color)
 
 
 def ball(body: str, part: str, center: Vector3, radius: float, color: Color) -> Visual:
-    """A sphere."""
+    """Return a sphere by its center and radius."""
     return ellipsoid(body, part, center, (radius, radius, radius), color)
 
 
 def capsule(body: str, part: str, start: Vector3, end: Vector3, radius: float, color: Color) -> Visual:
-    """A rounded rod between the centres of its two caps."""
+    """Return a rounded rod by the centers of its two caps."""
     dx, dy, dz = (a - b for a, b in zip(start, end, strict=True))
     length = math.hypot(dx, dy, dz)
-    # Pitch and yaw that turn the z axis onto the rod.
+    # Pitch and yaw that rotate the z axis to the rod.
     rpy = (0.0, math.atan2(math.hypot(dx, dy), dz), math.atan2(dy, dx))
     center = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2, (start[2] + end[2]) / 2)
     return Visual(body, part, "capsule", (radius, length), center, rpy, color)
@@ -117,7 +117,7 @@ def _trunk() -> Iterator[Visual]:
     yield ellipsoid("Pelvis", "crotch", (0.0, 0, -0.035), (0.09, 0.085, 0.07), TROUSERS)
     yield ellipsoid("Pelvis", "belt", (-0.002, 0, 0.088), (0.108, 0.153, 0.024), BELT)
     yield ellipsoid("Pelvis", "buckle", (0.104, 0, 0.088), (0.008, 0.02, 0.014), SHIRT)
-    # Tall and much overlapping, so that the waist is smooth both upright and bent.
+    # Tall and overlapping, so that the waist is smooth both upright and bent.
     for level in (6, 5, 4, 3, 2, 1):
         height = 0.14 if level == 6 else 0.17
         radii = (0.106, 0.150 - 0.001 * level, height)
@@ -140,7 +140,7 @@ def _right_trunk_half() -> Iterator[Visual]:
 
 
 def _head() -> Iterator[Visual]:
-    """Neck, skull, face and hair; the vertex is the hair's highest point."""
+    """Neck, skull, face and hair; the vertex is the highest point of the hair."""
     yield capsule("Cervical_5_7", "neck", (-0.006, 0, -0.03), (0, 0, 0.055), 0.052, SKIN)
     yield capsule("Cervical_3_4_Axis", "neck", (0, 0, 0), (0.004, 0, 0.06), 0.051, SKIN)
     yield ellipsoid("Head", "skull", (0.008, 0, 0.048), (0.090, 0.075, 0.092), SKIN)
@@ -204,9 +204,9 @@ def _right_leg() -> Iterator[Visual]:
 
 
 def _striped(body: str, part: str, center: Vector3, radii: Vector3) -> Iterator[Visual]:
-    """A piece of trouser leg with a stripe down its outer side.
+    """A part of a trouser leg with a stripe on its outer side.
 
-    The stripe is the same ellipsoid, made narrow and moved outward, so that it hugs the leg.
+    The stripe is the same ellipsoid, narrowed and moved outward, so that it follows the leg.
     """
     yield ellipsoid(body, part, center, radii, TROUSERS)
     outward = (center[0], center[1] - 0.0025, center[2])
@@ -231,7 +231,7 @@ def _sole(
 
 
 def _right_arm() -> Iterator[Visual]:
-    """Short sleeve with a cuff in the side's colour, bare arm, hand with fingers and thumb."""
+    """Short sleeve with a cuff in the color of the side, bare arm, hand with fingers and thumb."""
     reference = human()
     elbow = reference.joint("RightArmElbowMotion").origin
     wrist = reference.joint("RightArmWristMotion").origin

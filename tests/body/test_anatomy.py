@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from humanwalk.body import LEG_JOINTS, Joint, Skeleton, human
+from humanwalk.body import Joint, Skeleton, human
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.skeleton import Segment
 
 TABLE = json.loads((Path(__file__).parents[1] / "data" / "body_table.json").read_text())
@@ -72,7 +73,7 @@ def test_segment_and_its_place_equal_the_table(body: Skeleton, row: dict) -> Non
     assert segment.mass == pytest.approx(row["mass_kg"], abs=1e-12)
     np.testing.assert_allclose(segment.com, row["com_in_body_m"], atol=1e-12)
     np.testing.assert_allclose(segment.inertia, row["inertia_com_kgm2"], rtol=5e-6)
-    # The table rounds a place and the steps that lead to it apart, each to a micrometre.
+    # The table rounds a place and the steps that lead to it apart, each to a micrometer.
     np.testing.assert_allclose(body.origins[segment.name], row["neutral_origin_world_m"], atol=1.1e-6)
     assert (inboard and inboard.parent) == row["parent"]
     if inboard is not None:
@@ -115,8 +116,12 @@ def test_totals_and_heights(body: Skeleton) -> None:
 
 def test_whole_body_mass_properties(body: Skeleton) -> None:
     np.testing.assert_allclose(body.com, TABLE["com"], atol=1e-8)
-    np.testing.assert_allclose(np.diag(body.inertia), TABLE["inertia_com"], rtol=1e-6)
-    # Measured men of this size: centre of mass at .55 to .56 of stature (check table).
+    inertia = np.zeros((3, 3))
+    for segment in body.segments:
+        r = body.origins[segment.name] + segment.com - body.com
+        inertia += np.diag(segment.inertia) + segment.mass * (r @ r * np.eye(3) - np.outer(r, r))
+    np.testing.assert_allclose(np.diag(inertia), TABLE["inertia_com"], rtol=1e-6)
+    # Measured men of this size: center of mass at .55 to .56 of stature (check table).
     assert 0.55 <= body.com[2] / body.stature <= 0.565
 
 
@@ -200,7 +205,7 @@ def test_positive_angles_are_the_named_motions(body: Skeleton) -> None:
 
 @pytest.mark.parametrize("side", ["Right", "Left"])
 def test_leg_joints_are_the_chain_from_hip_to_hind_foot(body: Skeleton, side: str) -> None:
-    chain = [body.joint(name) for name in LEG_JOINTS[side]]
+    chain = [body.joint(name) for name in LEGS[side].chain]
     assert chain[0].parent == "Pelvis"
     assert chain[-1].child == f"{side}Leg_Ankle"
     assert [j.parent for j in chain[1:]] == [j.child for j in chain[:-1]]

@@ -1,4 +1,4 @@
-"""The second look shows the skeleton as it is computed with."""
+"""The look `bones` shows the geometry of the computed body."""
 
 import numpy as np
 import pytest

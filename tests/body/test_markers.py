@@ -1,4 +1,4 @@
-"""The marker set: named, on the body it says, symmetric, and growing with the body."""
+"""The marker set: names, bodies, symmetry, and scaling with the body."""
 
 import numpy as np
 import pytest
@@ -55,7 +55,7 @@ def test_landmarks_lie_as_in_anatomy(skeleton):
     assert abs(p["RKNE"][1]) > skeleton.hip_half_width > abs(p["RKNM"][1])
 
 
-def test_middle_of_medial_and_lateral_marker_is_the_joint_centre(skeleton):
+def test_middle_of_medial_and_lateral_marker_is_the_joint_center(skeleton):
     p = standing(skeleton)
     for lateral, medial, child in (
         ("RKNE", "RKNM", "RightLeg_Tibia"),
@@ -74,7 +74,7 @@ def test_markers_are_near_the_skin(skeleton):
         elif visual.primitive == "capsule":
             surfaces.append((skeleton.origins[visual.body] + np.array(visual.center), np.array(visual.size[:1] * 3)))
     for name, place in standing(skeleton).items():
-        # Distance to an ellipsoid's surface along the ray from its centre.
+        # Distance to an ellipsoid's surface along the ray from its center.
         nearest = min(
             abs(1 - 1 / max(1e-9, np.linalg.norm((place - center) / radii))) * np.linalg.norm(place - center)
             for center, radii in surfaces

@@ -14,7 +14,7 @@ from pydrake.multibody.tree import RevoluteJoint
 from pydrake.systems.framework import DiagramBuilder
 
 import humanwalk
-from humanwalk.body import HYDRO_SET, POINT_SET, Skeleton, human, to_sdf, write_sdf
+from humanwalk.body import HYDRO_SET, POINT_SET, Skeleton, human, to_sdf
 
 COMMITTED = Path(humanwalk.__file__).parent / "models" / "sdf" / "human.sdf"
 PEOPLE = {
@@ -85,27 +85,6 @@ def test_committed_file_is_what_the_writer_writes() -> None:
 
 def test_writer_is_deterministic() -> None:
     assert to_sdf(human()) == to_sdf(human())
-
-
-def test_file_is_written_whole_and_alone(tmp_path: Path) -> None:
-    path = tmp_path / "someone.sdf"
-    path.write_text("an older file")
-    write_sdf(human(), path)
-    assert path.read_text() == to_sdf(human())
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_failed_write_leaves_the_older_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full_disk(descriptor: int) -> None:
-        raise OSError("no space left on device")
-
-    path = tmp_path / "someone.sdf"
-    path.write_text("an older file")
-    monkeypatch.setattr("humanwalk.body.sdf.os.fsync", full_disk)
-    with pytest.raises(OSError, match="no space"):
-        write_sdf(human(), path)
-    assert path.read_text() == "an older file"
-    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_names_of_siblings_are_unique() -> None:
@@ -202,7 +181,7 @@ def test_point_set_stands_within_the_hydroelastic_soles(parsed: Parsed) -> None:
             ), name
 
 
-def test_centre_of_mass_stands_over_the_feet(parsed: Parsed) -> None:
+def test_the_center_of_mass_is_above_the_feet(parsed: Parsed) -> None:
     centers = np.array([X.translation() for _, _, X in parsed.shapes(Role.kProximity, POINT_SET)])
     x, y, _ = parsed.skeleton.com
     assert centers[:, 0].min() < x < centers[:, 0].max()
@@ -243,7 +222,7 @@ def test_every_big_segment_can_be_seen(parsed: Parsed) -> None:
             assert any(name.startswith(f"human::{segment.name}_") for name in seen), segment.name
 
 
-def test_left_and_right_look_like_mirror_images_but_for_colour(parsed: Parsed) -> None:
+def test_left_and_right_look_like_mirror_images_except_for_color(parsed: Parsed) -> None:
     rights = parsed.shapes(Role.kIllustration, "::Right")
     lefts = {name: (shape, X) for name, shape, X in parsed.shapes(Role.kIllustration, "::Left")}
     assert len(rights) == len(lefts)
