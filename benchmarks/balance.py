@@ -25,11 +25,10 @@ from pydrake.systems.analysis import InitializeParams, Simulator
 from pydrake.systems.framework import Context, Diagram
 
 from humanwalk.body import SIDES
-from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import steady_from
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
@@ -53,17 +52,17 @@ AFTER_PUSH = 4.0
 
 def walk(speed: float, duration: float, **overrides: str) -> Scenario:
     points = f"[{{time: 1.0, forward: {speed}}}]"
-    return load_scenario("walk", {"balanced.command.points": points, "duration": str(duration)} | overrides)
+    return load_scenario("walk", {"controller.balanced.command.points": points, "duration": str(duration)} | overrides)
 
 
 def measure(label: str, scenario: Scenario) -> dict[str, Any]:
     outcome = simulate(scenario)
     signals = outcome.signals
     time, x, y = (signals[name].to_numpy() for name in (TIME, "com.x_m", "com.y_m"))
-    steady = time >= steady_from(scenario)
+    steady = time >= scenario.controller.steady_from(scenario.subject)
     several = steady.sum() > 1
     landings = np.sort(np.concatenate([events_of(signals, side).touchdown_times for side in SIDES]))
-    steps = np.diff(landings[landings >= steady_from(scenario)])
+    steps = np.diff(landings[landings >= scenario.controller.steady_from(scenario.subject)])
     row = {
         "run": label,
         "end": outcome.end,
@@ -149,7 +148,7 @@ def invariance(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
             overrides = {
                 "contact": contact,
                 "simulation.time_step": str(time_step),
-                "balanced.control_period": str(period),
+                "controller.balanced.control_period": str(period),
             }
             yield measure(label, walk(1.0, args.duration, **overrides))
 
@@ -161,7 +160,7 @@ def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 def off_path(scenario: Scenario, x: Array, y: Array) -> float:
     """Greatest distance [m] of the centre of mass from the curve that the command describes, whatever the time."""
-    profile = CommandProfile(scenario.balanced.command)
+    profile = CommandProfile(scenario.controller.command)
     path, curve, dt = Place(complex(x[0], y[0]), 0.0), [], 0.01
     for tick in range(round(scenario.duration / dt)):
         curve.append(path.position)

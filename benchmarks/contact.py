@@ -24,14 +24,14 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.contact.asperity import AsperityParameters, friction_bound, friction_force, normal_force
 from humanwalk.contact.contact_step import Contacts, ContactStep
-from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.measures.events import CONTACT_ON_N, events_of
-from humanwalk.measures.signals import TIME, matrix, signal_columns
-from humanwalk.measures.summary import steady_from
+from humanwalk.measures.signals import TIME, matrix
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems import asperity_contact
+from humanwalk.systems.signal import state_columns
 from humanwalk.view.plots.drawing import curve, label, legend, level, new_figure, save
 
 ROOT = Path(__file__).parent.parent
@@ -136,7 +136,7 @@ def sole_motion(scenario: Scenario, signals: Any) -> dict[str, tuple[np.ndarray,
     """Of each foot, whatever the model: depth of its deepest point [m], mean speed of those below ground [m/s]."""
     plant = kinematics_plant(scenario.subject)
     context, world = plant.CreateDefaultContext(), plant.world_frame()
-    states = matrix(signals, signal_columns(JointMap.of(plant))["state"])
+    states = matrix(signals, state_columns(JointMap.of(plant)))
     motion = {}
     for side in SIDES:
         patches = [(plant.GetBodyByName(p.body), p.p_BoQ_B.T) for p in sole_patches(scenario.subject.skeleton, side)]
@@ -160,7 +160,7 @@ def sole_motion(scenario: Scenario, signals: Any) -> dict[str, tuple[np.ndarray,
 
 def measure(scenario: Scenario, signals: Any, how: dict[str, Any], motion: Any) -> dict[str, Any]:
     time_s = signals[TIME].to_numpy()
-    steady = time_s >= steady_from(scenario)
+    steady = time_s >= scenario.controller.steady_from(scenario.subject)
     weight = scenario.subject.mass * GRAVITY
     column = lambda name: signals[name].to_numpy()[steady]  # noqa: E731
     vertical = sum(column(f"{side.lower()}_foot.force_z_N") for side in SIDES)

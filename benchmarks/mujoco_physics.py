@@ -227,7 +227,7 @@ def main() -> None:
     if duration < 1.0:
         raise ParameterError(f"--duration: {duration:g} is out of range; allowed: from 1 s on; give more")
     thesis = load_scenario("thesis", {"duration": repr(duration)})
-    standing = load_scenario("thesis", {"duration": repr(duration), "gait.ramp.speed": "0"})
+    standing = load_scenario("thesis", {"duration": repr(duration), "controller.thesis.gait.ramp.speed": "0"})
     results = {
         "dynamics": same_dynamics(thesis),
         "fall": free_fall(thesis),

@@ -1,6 +1,6 @@
 """Measures the thesis' walk against what it must reach, and writes benchmarks/results/thesis_walk.json.
 
-python benchmarks/thesis_walk.py [--repeats 3] [--set gait.path.step_height=0.12]
+python benchmarks/thesis_walk.py [--repeats 3] [--set controller.thesis.gait.path.step_height=0.12]
 
 Every repeat is a process of its own on one core, so that memory and start-up are those of a user's run. The real-time
 factor is the median; two repeats must give the same bits.

@@ -1,7 +1,7 @@
 """Which of several checkouts, or settings, is quicker, on a machine that does other things, too.
 
     python benchmarks/two_checkouts.py thesis . ../other
-    python benchmarks/two_checkouts.py walk . .,actuators.law=implicit --chunks 50
+    python benchmarks/two_checkouts.py walk . .,actuation.pd.law=implicit --chunks 50
 
 Each checkout simulates in a process of its own and waits for its turn after every 0.1 s of simulated time. What the
 machine does otherwise hits all of them alike: medians of the ratios of paired turns repeat to 2 or 3 %.

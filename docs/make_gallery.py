@@ -12,7 +12,7 @@ from pathlib import Path
 from rich.console import Console
 
 from humanwalk.cli.walk import walk_and_write
-from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.files import make_folder
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario, shipped_scenarios
@@ -101,7 +101,7 @@ def main(names: Sequence[str]) -> None:
     if names:
         return
     thesis = Run.open(RUNS / "thesis")
-    duration = LOOP_LENGTH / thesis.scenario.gait.ramp.speed
+    duration = LOOP_LENGTH / thesis.scenario.controller.commanded_speed
     rate = LOOP_FRAMES / duration
     loop = VideoParameters(rate, 1.0, 480, 400, begin=LOOP_BEGIN, end=LOOP_BEGIN + (LOOP_FRAMES - 1) / rate)
     record_video(thesis.path, IMAGES / "walker.webp", loop)

@@ -11,7 +11,9 @@ def main(heights: tuple[float, ...] = (0.12, 0.16, 0.20), duration: float = 4.0)
     """Walk with every height of the step [m]; return the right knee's mean correlation with people's by height."""
     found = {}
     for height in heights:
-        scenario = load_scenario("thesis", {"gait.path.step_height": str(height), "duration": str(duration)})
+        scenario = load_scenario(
+            "thesis", {"controller.thesis.gait.path.step_height": str(height), "duration": str(duration)}
+        )
         comparison = compare(simulate(scenario).signals, scenario)
         knee = comparison.curves["knee"]["Right"]
         found[height] = float(knee.correlation.mean())

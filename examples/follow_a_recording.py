@@ -34,7 +34,10 @@ def main(folder: Path, duration: float = 2.0) -> dict[str, Run]:
     write_squat(recording, duration)
     runs = {}
     for name, kinematic in (("followed", "false"), ("shown", "true")):
-        overrides = {"follow.file": str(recording), "follow.kinematic": kinematic, "duration": str(duration)}
+        overrides = {
+            "controller": f"{{recorded: {{angles: {recording}, kinematic: {kinematic}}}}}",
+            "duration": str(duration),
+        }
         runs[name] = simulate(load_scenario("thesis", overrides)).save(folder / name)
         print(f"{name}: the pelvis sinks by {100 * np.ptp(runs[name]['pelvis.z']):.1f} cm")
     print(f"the knee needs up to {runs['followed'].summary['peak_torque_N_m']['RightLegTibiaMotion']:.0f} N m")

@@ -16,7 +16,7 @@ def main(folder: Path) -> float:
     """Print what the run says, export it, and return the greatest force on the right foot [N]."""
     run = Run.open(folder)
     print(f"{run.summary['scenario']}: {run.summary['end']} after {run.time[-1]:g} s")
-    print(f"commanded {run.scenario.gait.ramp.speed:g} m/s, walked {run.summary['mean_speed_m_s']} m/s")
+    print(f"commanded {run.scenario.controller.commanded_speed:g} m/s, walked {run.summary['mean_speed_m_s']} m/s")
 
     force = run["right_foot.force_z"]
     print(f"greatest force on the right foot: {force.max():.0f} {run.units['right_foot.force_z_N']}")

@@ -12,7 +12,9 @@ from humanwalk import load_scenario, simulate
 
 def walk(step_height: float, duration: float) -> dict[str, float]:
     """The summary of a walk with a step height [m]."""
-    scenario = load_scenario("thesis", {"gait.path.step_height": str(step_height), "duration": str(duration)})
+    scenario = load_scenario(
+        "thesis", {"controller.thesis.gait.path.step_height": str(step_height), "duration": str(duration)}
+    )
     return simulate(scenario).summary(f"step height {step_height:g} m")
 
 

@@ -8,7 +8,7 @@ For scripts and notebooks, what most of them need is here:
 
     from humanwalk import load_scenario, simulate
 
-    outcome = simulate(load_scenario("thesis", {"gait.path.step_height": "0.12", "duration": "3"}))
+    outcome = simulate(load_scenario("thesis", {"controller.thesis.gait.path.step_height": "0.12", "duration": "3"}))
     run = outcome.save("runs/low")
     run["RightLegTibiaMotion.torque"]  # with run.units; run.summary; humanwalk.plot(run, "joint_torques")
 """
@@ -18,7 +18,6 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from humanwalk.choices.balanced import make_balanced_walker
     from humanwalk.diagrams.playback import make_playback
     from humanwalk.diagrams.walker import make_walker
     from humanwalk.quantity import ParameterError
@@ -36,7 +35,6 @@ _HOMES = {
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
     "load_scenario": "humanwalk.scenario",
-    "make_balanced_walker": "humanwalk.choices.balanced",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
     "plot": "humanwalk.view.plots",
@@ -50,7 +48,6 @@ __all__ = [
     "Scenario",
     "__version__",
     "load_scenario",
-    "make_balanced_walker",
     "make_playback",
     "make_walker",
     "plot",

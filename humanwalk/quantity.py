@@ -64,6 +64,17 @@ def choice(choices: Mapping[str, type[Any]], default: Any) -> Any:
     return dataclasses.field(default=default, metadata={"choices": choices})
 
 
+def file_path() -> Any:
+    """Dataclass field for the path of a file; a relative one in a parameter file counts from that file's folder."""
+    return dataclasses.field(default="", metadata={"path": True})
+
+
+def file_paths(parameters: Any) -> dict[str, str]:
+    """Paths of the files that a dataclass of parameters names, by field; those that are empty are left out."""
+    fields = (field.name for field in dataclasses.fields(parameters) if field.metadata.get("path"))
+    return {name: getattr(parameters, name) for name in fields if getattr(parameters, name)}
+
+
 def tag_of(choices: Mapping[str, type[Any]], value: Any) -> str:
     """Tag of a choice: the key of its type."""
     return next(tag for tag, kind in choices.items() if type(value) is kind)

@@ -9,12 +9,15 @@ from humanwalk.body import LEG_JOINTS
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.control.inverse_kinematics import LegKinematics
+from humanwalk.diagrams.walker import make_walker
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.measures.human_likeness import ANGLES, people
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import GRAVITY
+from humanwalk.run.recorder import recorded_signals
+from humanwalk.scenario import load_scenario
 
 PERIOD = 0.005
 WEIGHT = 70.0 * GRAVITY
@@ -101,3 +104,11 @@ def gait(skeleton):
 def walk():
     """Makes the signals of a walk that moves as people do, see `make_walk`."""
     return make_walk
+
+
+@pytest.fixture(scope="session")
+def columns(joints):
+    """Every column that the walkers of the scenarios thesis and stand record, once."""
+    walkers = [make_walker(load_scenario(name)) for name in ("thesis", "stand")]
+    names = (column for walker in walkers for signal in recorded_signals(walker, joints) for column in signal.columns)
+    return tuple(dict.fromkeys(names))

@@ -95,7 +95,9 @@ def test_a_number_that_is_not_finite_is_refused_even_without_bounds(value):
 def test_nested_dataclasses_and_mappings_have_dotted_names():
     assert message_of(Tree(leaf=Leaf(length=2.0))).startswith("leaf.length: 2 ")
     assert message_of(Tree(by_name={"Knee": Leaf(length=2.0)})).startswith("by_name.Knee.length: 2 ")
-    assert message_of(Tree(angle=2.0), "gait.path").startswith("gait.path.angle: 2 ")
+    assert message_of(Tree(angle=2.0), "controller.thesis.gait.path").startswith(
+        "controller.thesis.gait.path.angle: 2 "
+    )
 
 
 def test_plain_mappings_and_texts_are_not_checked():

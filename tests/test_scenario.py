@@ -65,8 +65,8 @@ def test_dump_writes_every_field():
 
 
 def test_anchors_of_underscored_keys_are_usable():
-    scenario = parse_scenario("_slow: &slow 0.7\ngait: {ramp: {speed: *slow}}")
-    assert scenario.gait.ramp.speed == 0.7
+    scenario = parse_scenario("_slow: &slow 0.7\ncontroller: {thesis: {gait: {ramp: {speed: *slow}}}}")
+    assert scenario.controller.gait.ramp.speed == 0.7
 
 
 # Overrides are typed as in YAML.
@@ -80,10 +80,10 @@ def test_anchors_of_underscored_keys_are_usable():
         ("seed", "7", 7),
         ("contact", "hydroelastic", "hydroelastic"),
         ("contact", "asperity", "asperity"),
-        ("balance.support.enabled", "false", False),
-        ("balance.support.enabled", "no", False),
+        ("controller.thesis.balance.support.enabled", "false", False),
+        ("controller.thesis.balance.support.enabled", "no", False),
         ("description", "a walk", "a walk"),
-        ("gait.path.step_height", "0.12", 0.12),
+        ("controller.thesis.gait.path.step_height", "0.12", 0.12),
         ("start.joint_angles", "{RightLegTibiaMotion: 0.3}", {"RightLegTibiaMotion": 0.3}),
         ("start.joint_angles.RightLegTibiaMotion", "0.3", {"RightLegTibiaMotion": 0.3}),
     ],
@@ -99,7 +99,7 @@ def test_override_is_typed_like_yaml(key, text, value):
 
 def test_override_replaces_one_field_and_keeps_its_neighbours():
     text = "gait: {path: {step_length: 0.4, step_height: 0.1}}"
-    path = parse_scenario(text, {"gait.path.step_height": "0.15"}).gait.path
+    path = parse_scenario(text, {"controller.thesis.gait.path.step_height": "0.15"}).gait.path
     assert (path.step_length, path.step_height) == (0.4, 0.15)
 
 
@@ -116,7 +116,14 @@ def test_override_that_is_no_number_is_refused(value):
 # What is refused, and how to mend it.
 
 
-@pytest.mark.parametrize("key", ["gait.path.step_hight", "gait.path.stepheight", "gait.path.step_heigth"])
+@pytest.mark.parametrize(
+    "key",
+    [
+        "controller.thesis.gait.path.step_hight",
+        "controller.thesis.gait.path.stepheight",
+        "controller.thesis.gait.path.step_heigth",
+    ],
+)
 def test_misspelt_field_is_answered_with_the_right_one(key):
     message = refusal("", {key: "0.1"})
     assert message.startswith(f"{key}:")
@@ -126,10 +133,10 @@ def test_misspelt_field_is_answered_with_the_right_one(key):
 @pytest.mark.parametrize(
     ("key", "value", "mend"),
     [
-        ("gait.path.step_length", "50", ("centimeters", "0.5")),
-        ("gait.path.step_height", "200", ("millimeters", "0.2")),
-        ("gait.path.toe_drop", "25", ("degrees", "0.4363")),
-        ("gait.ramp.speed", "5", ("km/h", "1.389")),
+        ("controller.thesis.gait.path.step_length", "50", ("centimeters", "0.5")),
+        ("controller.thesis.gait.path.step_height", "200", ("millimeters", "0.2")),
+        ("controller.thesis.gait.path.toe_drop", "25", ("degrees", "0.4363")),
+        ("controller.thesis.gait.ramp.speed", "5", ("km/h", "1.389")),
         ("simulation.time_step", "1", ("milliseconds", "0.001")),
         ("start.joint_angles.RightLegTibiaMotion", "30", ("degrees", "0.5236")),
     ],
@@ -140,7 +147,10 @@ def test_slip_of_the_unit_is_named_and_mended(key, value, mend):
     assert all(part in message for part in mend)
 
 
-@pytest.mark.parametrize("key", ["duration", "gait.ramp.speed", "start.joint_angles.a", "actuators.gains.a.kp"])
+@pytest.mark.parametrize(
+    "key",
+    ["duration", "controller.thesis.gait.ramp.speed", "start.joint_angles.a", "controller.thesis.gains.joints.a.kp"],
+)
 @pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "1e400", "'nan'"])
 def test_number_that_is_not_finite_is_refused(key, value):
     message = refusal("", {key: value})
@@ -148,7 +158,9 @@ def test_number_that_is_not_finite_is_refused(key, value):
     assert "finite" in message
 
 
-@pytest.mark.parametrize("key", ["duration", "seed", "inverse_kinematics.max_iterations", "contact", "gait"])
+@pytest.mark.parametrize(
+    "key", ["duration", "seed", "controller.thesis.inverse_kinematics.max_iterations", "contact", "gait"]
+)
 @pytest.mark.parametrize("value", ["1" + "0" * 400, "-1" + "0" * 400, "1" + "0" * 5000, "0x" + "f" * 9000])
 def test_huge_whole_number_is_refused(key, value):
     assert key in refusal("", {key: value})
@@ -167,21 +179,21 @@ def test_huge_whole_number_is_refused(key, value):
         ("seed", "1.5", "a whole number"),
         ("seed", "true", "a whole number"),
         ("seed", "-1", "allowed: 0 to"),
-        ("balance.support.enabled", "1", "true or false"),
-        ("balance.support.enabled", "'true'", "true or false"),
+        ("controller.thesis.balance.support.enabled", "1", "true or false"),
+        ("controller.thesis.balance.support.enabled", "'true'", "true or false"),
         ("description", "3", "text"),
         ("gait", "[1]", "allowed: ramp, path, first_swing, arms"),
-        ("gait.path", "0.3", "allowed: step_length"),
-        ("gait.path", "null", "allowed: step_length"),
+        ("controller.thesis.gait.path", "0.3", "allowed: step_length"),
+        ("controller.thesis.gait.path", "null", "allowed: step_length"),
         ("start.joint_angles", "[1]", "name: value pairs"),
         ("start.joint_angles", "{1: 0.2}", "name: value pairs"),
-        ("actuators.gains", "{a: 3}", "allowed: kp, kd"),
+        ("controller.thesis.gains.joints", "{a: 3}", "allowed: kp, kd"),
         ("subject.mass", "-3", "allowed: 30 to 200 kg"),
         ("contact", "pont", "did you mean point?"),
         ("contact", "[point]", "allowed: point, hydroelastic, asperity"),
         ("contact", "null", "allowed: point, hydroelastic, asperity"),
-        ("gait.first_swing", "right", "did you mean Right?"),
-        ("gait.path.swing", "3", "allowed: thesis, smooth"),
+        ("controller.thesis.gait.first_swing", "right", "did you mean Right?"),
+        ("controller.thesis.gait.path.swing", "3", "allowed: thesis, smooth"),
     ],
 )
 def test_value_of_the_wrong_kind_is_refused(key, value, said):
@@ -418,4 +430,4 @@ def test_same_key_in_two_groups_is_no_doubling():
     scenario = parse_scenario(
         f"_a: &a {{speed: 1.0}}\ngait: {{ramp: *a}}\nbalanced: {{command: {{points: {points}}}}}\n"
     )
-    assert (scenario.gait.ramp.speed, len(scenario.balanced.command.points)) == (1.0, 2)
+    assert (scenario.controller.gait.ramp.speed, len(scenario.balanced.command.points)) == (1.0, 2)

@@ -10,7 +10,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, InputPort, PortDataType
 
 from humanwalk.bench.cost import Cost, cost_of
-from humanwalk.choices.world import add_human_plant
+from humanwalk.diagrams.world import add_world
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.simulate import Prepared
@@ -42,7 +42,9 @@ def record_plant(prepared: Prepared) -> PlantRecord:
     """
     plant = prepared.plant
     if plant is None:
-        raise ParameterError("follow.kinematic: true has no plant to measure; allowed: false; leave it out")
+        raise ParameterError(
+            "controller: recorded without physics has no plant to measure; allowed: kinematic: false; set it"
+        )
     if plant.time_step() == 0:
         raise ParameterError("simulation.integrator: cenic cannot be split; allowed: discrete; set it")
     record = PlantRecord()
@@ -73,7 +75,7 @@ class BarePlant:
     def __init__(self, scenario: Scenario, record: PlantRecord) -> None:
         """Make the plant and put it where the record begins."""
         builder = DiagramBuilder()
-        self.plant = add_human_plant(builder, scenario, visuals=False).plant
+        self.plant = add_world(builder, scenario, visuals=False).plant
         self.simulator = Simulator(builder.Build())
         self._context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
         self._record = record

@@ -1,139 +1,143 @@
-"""The walker on its own feet as a Diagram: command, step planner, whole-body controller, PD actuators, plant."""
+"""The controller that balances: step planner and whole-body program, no external force."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
-from pydrake.systems.primitives import ConstantVectorSource
+from pydrake.systems.framework import OutputPort
 
-from humanwalk.body import SIDES
-from humanwalk.body.plant import kinematics_plant
-from humanwalk.choices.contact import add_foot_contact, connect_spatial_forces
-from humanwalk.choices.start import start_positions
-from humanwalk.choices.world import add_human_plant
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import ARMS, LEGS
+from humanwalk.body.plant import Subject
+from humanwalk.choices.controller import Command
+from humanwalk.choices.start import StartPosture
+from humanwalk.choices.world import World
 from humanwalk.control.gain_noise import noisy_tasks
-from humanwalk.quantity import ParameterError
-from humanwalk.scenario import Scenario
-from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.systems.command_source import CommandSource
 from humanwalk.systems.gait_planner import GaitPlanner
-from humanwalk.systems.pd_actuator_bank import PdActuatorBank
-from humanwalk.systems.push_source import PushSource
 from humanwalk.systems.whole_body_controller import WholeBodyController
-from humanwalk.terrain import Plane
+from humanwalk.terrain import Terrain
+from humanwalk.walking.command import CommandParameters
+from humanwalk.walking.parameters import StepPlannerParameters
 
 START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
 
+SETTLING = 2.0
+"""Time that the walk takes to settle after its first change of speed [s]: four steps, docs/balance.md."""
+
 TASK_GAINS = 3
-"""What their noise is drawn from together with the scenario's seed."""
+"""Stream of the seed from which the noise of the tasks' gains is drawn."""
 
 
-def make_balanced_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
-    """Wire the walker of a scenario that balances by itself; its default context stands at the scenario's start.
+@dataclass(frozen=True)
+class CompliantGains:
+    """PD gains beside the feedforward torque: joints are damped, the small joints of the feet also held."""
 
-    Subsystems by name: plant, scene_graph, command, planner, controller, actuators, pushes (a PushSource where the
-    scenario has any, or zero), body_observer, foot_force_observer, or foot_contact with `contact: asperity`.
+    damping: float = quantity(1.0, "N m s/rad", 0.0, 100.0)
+    """Damping of every joint towards the planned rate."""
 
-    Exported outputs, joints in actuator order, named as those of `make_walker`:
-        state (97), query_object, contact_results, torque (42), saturated (42), desired_state (84),
-        phase (2), contact_schedule (2), soles (6), com (6), foot_forces (16), friction_use (2);
-    and its own:
-        command (3): see CommandSource.
-        balance (9): see GaitPlanner.
-        qp_status (3): see WholeBodyController.
-        push (3): force of the pushes [N].
+    foot_stiffness: float = quantity(500.0, "N m/rad", 0.0, 1e5)
+    """Stiffness of ankle rotation, midfoot and toes, which the planner does not steer."""
 
-    Args:
-        scenario: what is simulated.
-        visuals: whether there is anything to see; what nobody sees costs, too.
+    foot_damping: float = quantity(10.0, "N m s/rad", 0.0, 1e3)
+    """Damping of the same."""
 
-    Raises:
-        ParameterError: the scenario's start cannot be reached, or it asks for what this walker cannot do.
-    """
-    law = scenario.actuators.law
-    if scenario.simulation.integrator != "discrete" or law == "explicit":
-        raise ParameterError(
-            "controller: balanced needs the discrete plant, and actuators that it damps; allowed: "
-            "simulation.integrator: discrete with actuators.law: semi_implicit or implicit; set both"
+
+@dataclass(frozen=True)
+class BalancedController:
+    """Command, step planner and whole-body program; the last two run every control period."""
+
+    command: CommandParameters = CommandParameters()
+    """Speed and heading over time."""
+
+    planner: StepPlannerParameters = StepPlannerParameters()
+    """Steps and balance."""
+
+    whole_body: WholeBodyParameters = WholeBodyParameters()
+    """Joint torques."""
+
+    gains: CompliantGains = CompliantGains()
+
+    first_swing: Literal["Right", "Left"] = "Right"
+    """Leg that swings first."""
+
+    elbow_flexion: float = quantity(0.35, "rad", 0.0, 1.5)
+    """Flexion of the elbows while the arms hang."""
+
+    control_period: float = quantity(0.004, "s", 0.001, 0.01)
+    """Time between two plans and solutions."""
+
+    physics = True
+
+    @property
+    def commanded_speed(self) -> float:
+        """See `Controller`."""
+        return max((point.forward for point in self.command.points), key=abs, default=0.0)
+
+    def steady_from(self, subject: Subject) -> float:
+        """When the first change of speed is over and the walk has settled [s]."""
+        if not self.command.points:
+            return 0.0
+        first = self.command.points[0]
+        ramp = abs(complex(first.forward, first.sideways)) / self.command.acceleration
+        return first.time + self.planner.timing.weight_shift + ramp + SETTLING
+
+    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
+        """See `Controller`."""
+        gains = self.gains
+        foot = np.isin(JointMap.of(model).names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
+        return np.where(foot, gains.foot_stiffness, 0.0), np.where(foot, gains.foot_damping, gains.damping)
+
+    def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
+        """Standing on bent legs."""
+        angles = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        for leg in LEGS.values():
+            angles |= {leg.hip_flexion: START_FLEXION, leg.knee: 2.0 * START_FLEXION, leg.ankle: START_FLEXION}
+        return StartPosture(angles)
+
+    def add_to(self, world: World) -> Command:
+        """Add command, planner and controller.
+
+        Raises:
+            ParameterError: the plant is continuous.
+        """
+        if world.plant.time_step() == 0:
+            raise ParameterError(
+                "controller: balanced needs the discrete plant; allowed: simulation.integrator: discrete; set it"
+            )
+        command = world.add("command", CommandSource(self.command))
+        planner = world.add(
+            "planner",
+            GaitPlanner(world.model, self.planner, self.first_swing, self.control_period, world.terrain),
+            state=world.state,
+            foot_forces=world.port("foot_contact", "foot_forces"),
+            command=command.GetOutputPort("command"),
         )
-    builder = DiagramBuilder()
-    human = add_human_plant(builder, scenario, visuals)
-    plant, model = human.plant, kinematics_plant(scenario.subject)
-    stance = {
-        f"{side}Leg{joint}Motion": times * START_FLEXION
-        for side in SIDES
-        for joint, times in (("Femur", 1.0), ("Tibia", 2.0), ("Ankle", 1.0))
-    }
-    start = replace(scenario.start, joint_angles=stance | scenario.start.joint_angles)
-    plant.SetDefaultPositions(start_positions(replace(scenario, start=start)))
+        tasks = noisy_tasks(self.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
+        posture = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        controller = world.add(
+            "controller",
+            WholeBodyController(
+                world.model, world.subject.skeleton, tasks, posture, self.control_period, world.terrain
+            ),
+            state=world.state,
+            plan=planner.GetOutputPort("plan"),
+        )
+        return Command(
+            desired_state=controller.GetOutputPort("desired_state"),
+            sample_time=controller.GetOutputPort("sample_time"),
+            feedforward=controller.GetOutputPort("torque"),
+        )
 
-    walk = scenario.balanced
-    command = builder.AddNamedSystem("command", CommandSource(walk.command))
-    planner = builder.AddNamedSystem(
-        "planner", GaitPlanner(model, walk.planner, scenario.gait.first_swing, walk.control_period, Plane())
-    )
-    posture = {f"{side}ArmElbowMotion": scenario.gait.arms.elbow_flexion for side in SIDES}
-    tasks = noisy_tasks(walk.whole_body, scenario.start.gain_noise, np.random.default_rng((scenario.seed, TASK_GAINS)))
-    controller = builder.AddNamedSystem(
-        "controller",
-        WholeBodyController(model, scenario.subject.skeleton, tasks, posture, walk.control_period, Plane()),
-    )
-    bank = builder.AddNamedSystem("actuators", PdActuatorBank(plant, human.kp, human.kd, law, human.effort_limits))
-    body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
-    feet = add_foot_contact(builder, scenario, human)
-
-    builder.Connect(plant.get_state_output_port(), body.GetInputPort("state"))
-    builder.Connect(plant.get_state_output_port(), planner.GetInputPort("state"))
-    builder.Connect(feet.foot_forces, planner.GetInputPort("foot_forces"))
-    builder.Connect(command.GetOutputPort("command"), planner.GetInputPort("command"))
-    builder.Connect(plant.get_state_output_port(), controller.GetInputPort("state"))
-    builder.Connect(planner.GetOutputPort("plan"), controller.GetInputPort("plan"))
-    builder.Connect(controller.GetOutputPort("torque"), bank.GetInputPort("feedforward"))
-    builder.Connect(controller.GetOutputPort("desired_state"), bank.GetInputPort("desired_state"))
-    builder.Connect(controller.GetOutputPort("sample_time"), bank.GetInputPort("sample_time"))
-    builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
-    builder.Connect(plant.get_net_actuation_output_port(), bank.GetInputPort("net_actuation"))
-    builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
-    if law == "implicit":
-        builder.Connect(bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(human.instance))
-    push, spatial_forces = _add_pushes(builder, scenario, plant)
-    connect_spatial_forces(builder, human, (*feet.spatial_forces, *spatial_forces))
-
-    for port, name in (
-        (plant.get_state_output_port(), "state"),
-        (human.scene_graph.get_query_output_port(), "query_object"),
-        (plant.get_contact_results_output_port(), "contact_results"),
-        (bank.GetOutputPort("torque"), "torque"),
-        (bank.GetOutputPort("saturated"), "saturated"),
-        (bank.GetOutputPort("held_desired_state"), "desired_state"),
-        (planner.GetOutputPort("phase"), "phase"),
-        (planner.GetOutputPort("contact_schedule"), "contact_schedule"),
-        (body.GetOutputPort("soles"), "soles"),
-        (body.GetOutputPort("com"), "com"),
-        (feet.foot_forces, "foot_forces"),
-        (feet.friction_use, "friction_use"),
-        (command.GetOutputPort("command"), "command"),
-        (planner.GetOutputPort("balance"), "balance"),
-        (controller.GetOutputPort("status"), "qp_status"),
-        (push, "push"),
-    ):
-        builder.ExportOutput(port, name)
-    diagram = builder.Build()
-    diagram.set_name("walker")
-    return diagram
-
-
-def _add_pushes(
-    builder: DiagramBuilder, scenario: Scenario, plant: MultibodyPlant
-) -> tuple[OutputPort, tuple[OutputPort, ...]]:
-    """Add what pushes the body; returns the ports of the pushes' force and of the forces for the plant.
-
-    Where a scenario has no pushes there is no source of any: the plant would ask it in every step.
-    """
-    if not scenario.pushes.any:
-        none = builder.AddNamedSystem("pushes", ConstantVectorSource(np.zeros(3)))
-        return none.get_output_port(), ()
-    pushes = builder.AddNamedSystem("pushes", PushSource(plant, scenario.pushes, scenario.seed))
-    return pushes.GetOutputPort("force"), (pushes.GetOutputPort("spatial_forces"),)
+    def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
+        """Raise ParameterError: a plan depends on the simulated state."""
+        raise ParameterError(
+            "controller: balanced has no motion to show without physics; allowed: thesis, recorded; simulate it"
+        )

@@ -1,131 +1,178 @@
-"""What the ground does to the feet, whichever contact model the scenario has."""
+"""The contact of feet and ground: Drake's point or hydroelastic contact, or the thesis' asperity law."""
 
-from collections.abc import Callable, Sequence
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
-from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer, MultibodyPlant
-from pydrake.systems.framework import DiagramBuilder, OutputPort
+from pydrake.geometry import (
+    CollisionFilterDeclaration,
+    GeometrySet,
+    ProximityProperties,
+    SceneGraph,
+)
+from pydrake.multibody.plant import ContactModel, MultibodyPlant
+from pydrake.multibody.tree import BodyIndex
 
 from humanwalk.body import SIDES, sole_patches
-from humanwalk.body.contact import SolePatch
-from humanwalk.choices.world import HumanPlant
+from humanwalk.body.contact import HYDRO_SET, POINT_SET
+from humanwalk.choices.world import World
 from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.contact_step import body_jacobians
+from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.contact.stable_step import largest_contact_step, patch_impedance
-from humanwalk.control.pd_laws import PD_LAWS
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
-from humanwalk.scenario import Scenario
 from humanwalk.systems.asperity_contact import AsperityContact
 from humanwalk.systems.foot_force_observer import FootForceObserver
-from humanwalk.terrain import Plane
+
+
+class Contact(Protocol):
+    """One model of contact."""
+
+    @property
+    def leg_contact(self) -> bool:
+        """Whether one leg stops the other; else they pass through each other."""
+
+    @property
+    def model(self) -> ContactModel:
+        """Drake's contact model."""
+
+    @property
+    def unused_sets(self) -> tuple[str, ...]:
+        """Sets of collision shapes under the feet that Drake must not collide."""
+
+    def ground_properties(self, friction: float) -> ProximityProperties:
+        """Properties of the ground for a Coulomb coefficient between sole and ground."""
+
+    def add_to(self, world: World) -> None:
+        """Add the system `foot_contact` with the outputs foot_forces and friction_use of `FootForceObserver`.
+
+        Raises:
+            ParameterError: the contact cannot be simulated in this world.
+        """
 
 
 @dataclass(frozen=True)
-class FootContact:
-    """Ports of the feet's contact.
+class _DrakeContact:
+    leg_contact: bool = True
+    """Whether one leg stops the other; else they pass through each other."""
 
-    Attributes:
-        foot_forces: (16) see FootForceObserver.
-        friction_use: (2) see FootForceObserver.
-        spatial_forces: forces for the plant, where it does not make them itself.
-    """
+    def ground_properties(self, friction: float) -> ProximityProperties:
+        return ground_properties(friction)
 
-    foot_forces: OutputPort
-    friction_use: OutputPort
-    spatial_forces: tuple[OutputPort, ...]
+    def add_to(self, world: World) -> None:
+        observer = FootForceObserver(world.plant, world.scene_graph.model_inspector(), world.terrain)
+        world.add("foot_contact", observer, contact_results=world.plant.get_contact_results_output_port())
 
 
-def add_foot_contact(builder: DiagramBuilder, scenario: Scenario, human: HumanPlant) -> FootContact:
-    """Add `foot_contact`, the asperity law, or `foot_force_observer`, which sums what Drake's own contact does.
+@dataclass(frozen=True)
+class PointContact(_DrakeContact):
+    """Six spheres under each foot, with Drake's point contact."""
 
-    Raises:
-        ParameterError: the asperity law cannot be simulated as the scenario asks.
-    """
-    plant = human.plant
-    if scenario.contact != "asperity":
-        feet = builder.AddNamedSystem(
-            "foot_force_observer", FootForceObserver(plant, human.scene_graph.model_inspector(), Plane())
+    model = ContactModel.kPoint
+    unused_sets = (HYDRO_SET,)
+
+
+@dataclass(frozen=True)
+class HydroelasticContact(_DrakeContact):
+    """Three compliant boxes under each foot, with Drake's hydroelastic contact."""
+
+    model = ContactModel.kHydroelasticWithFallback
+    unused_sets = (POINT_SET,)
+
+    def ground_properties(self, friction: float) -> ProximityProperties:
+        """See `Contact`."""
+        return ground_properties(friction, hydroelastic=True)
+
+
+@dataclass(frozen=True)
+class AsperityContactModel(AsperityParameters):
+    """The thesis' normal penalty and asperity friction on the soles' lower faces; Drake collides no foot."""
+
+    leg_contact: bool = True
+    """Whether one leg stops the other; else they pass through each other."""
+
+    model = ContactModel.kPoint
+    unused_sets = (HYDRO_SET, POINT_SET)
+
+    def ground_properties(self, friction: float) -> ProximityProperties:
+        """See `Contact`."""
+        return ground_properties(friction)
+
+    def add_to(self, world: World) -> None:
+        """See `Contact`."""
+        if world.plant.time_step() == 0:
+            raise ParameterError(
+                "contact: asperity needs the discrete plant, whose step its forces are implicit in; allowed: with "
+                "simulation.integrator: discrete; set it and a time_step, or contact: point"
+            )
+        self._require_stable(world)
+        skeleton, step = world.subject.skeleton, world.plant.time_step()
+        contact = AsperityContact(
+            world.plant,
+            {side: sole_patches(skeleton, side) for side in SIDES},
+            world.terrain,
+            self,
+            _joint_impedance(world, step)[0],
         )
-        builder.Connect(plant.get_contact_results_output_port(), feet.GetInputPort("contact_results"))
-        return FootContact(feet.GetOutputPort("foot_forces"), feet.GetOutputPort("friction_use"), ())
-    if scenario.simulation.integrator != "discrete":
-        raise ParameterError(
-            "contact: asperity needs the discrete plant, whose step its forces are implicit in; allowed: with "
-            "simulation.integrator: discrete; set it and a time_step, or contact: point"
+        world.add("foot_contact", contact, state=world.state)
+        world.spatial_forces.append(contact.GetOutputPort("spatial_forces"))
+
+    def _require_stable(self, world: World) -> None:
+        """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""
+        plant, context = world.plant, world.plant.CreateDefaultContext()
+        patches = [patch for side in SIDES for patch in sole_patches(world.subject.skeleton, side)]
+        J = body_jacobians(plant, context, [plant.GetBodyByName(patch.body) for patch in patches])
+        R_SW = world.terrain.axes(np.zeros(2))
+        # In neutral standing every body of the feet is parallel to the world.
+        r, area = np.array([patch.p_BoQ_B for patch in patches]), np.array([patch.area for patch in patches])
+        stable = largest_contact_step(
+            plant.CalcMassMatrix(context),
+            J,
+            patch_impedance(r, area, R_SW, self.normal_stiffness, self.spring_stiffness),
+            patch_impedance(r, area, R_SW, self.normal_damping, self.velocity_stiffness),
+            lambda h: _joint_impedance(world, h),
+            _in_velocities(world, world.kp),
         )
-    feet = {side: sole_patches(scenario.subject.skeleton, side) for side in SIDES}
-    joint_law = _joint_law(scenario, human)
-    _require_stable_contact(
-        plant, [patch for foot in feet.values() for patch in foot], scenario.asperity, joint_law, human
-    )
-    contact = builder.AddNamedSystem(
-        "foot_contact",
-        AsperityContact(
-            plant,
-            feet,
-            Plane(),
-            scenario.asperity,
-            joint_law(plant.time_step())[0],
-        ),
-    )
-    builder.Connect(plant.get_state_output_port(), contact.GetInputPort("state"))
-    return FootContact(
-        contact.GetOutputPort("foot_forces"),
-        contact.GetOutputPort("friction_use"),
-        (contact.GetOutputPort("spatial_forces"),),
-    )
+        if plant.time_step() > stable:
+            raise ParameterError(
+                f"contact.asperity: unstable at time_step {plant.time_step():g} s; allowed: steps up to "
+                f"{round_down(stable):g} s with these joints, stiffness and damping; lower simulation.time_step"
+            )
 
 
-def connect_spatial_forces(builder: DiagramBuilder, human: HumanPlant, ports: Sequence[OutputPort]) -> None:
-    """Connect all of the ports' lists of forces to the plant's applied_spatial_force port."""
-    if len(ports) > 1:
-        every = builder.AddNamedSystem("spatial_forces", ExternallyAppliedSpatialForceMultiplexer(len(ports)))
-        for place, port in enumerate(ports):
-            builder.Connect(port, every.get_input_port(place))
-        ports = (every.get_output_port(),)
-    for port in ports:
-        builder.Connect(port, human.plant.get_applied_spatial_force_input_port())
+CONTACTS: dict[str, type[Contact]] = {
+    "point": PointContact,
+    "hydroelastic": HydroelasticContact,
+    "asperity": AsperityContactModel,
+}
+"""The contact models that a scenario can name."""
 
 
-def _joint_law(scenario: Scenario, human: HumanPlant) -> Callable[[float], tuple[Array, Array]]:
-    """What a step h of the actuators' law adds to the diagonal of the mass matrix, and what it takes explicitly."""
-    kp, kd = _in_velocities(human, human.kp), _in_velocities(human, human.kd)
-    return lambda h: PD_LAWS[scenario.actuators.law].impedance(h, kp, kd)
+def _joint_impedance(world: World, step: float) -> tuple[Array, Array]:
+    """`World.step_impedance` where the plant has the velocities of the joints, shape (nv,) each."""
+    implicit, explicit = world.step_impedance(step)
+    return _in_velocities(world, implicit), _in_velocities(world, explicit)
 
 
-def _in_velocities(human: HumanPlant, gains: Array) -> Array:
+def _in_velocities(world: World, gains: Array) -> Array:
     """Gains in actuator order, put where the plant has the joints' velocities; shape (nv,)."""
-    values = np.zeros(human.plant.num_velocities())
-    values[human.joints.v] = gains
+    values = np.zeros(world.plant.num_velocities())
+    values[world.joints.v] = gains
     return values
 
 
-def _require_stable_contact(
-    plant: MultibodyPlant,
-    patches: Sequence[SolePatch],
-    parameters: AsperityParameters,
-    joint_law: Callable[[float], tuple[Array, Array]],
-    human: HumanPlant,
-) -> None:
-    """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""
-    context = plant.CreateDefaultContext()
-    J = body_jacobians(plant, context, [plant.GetBodyByName(patch.body) for patch in patches])
-    R_SW = Plane().axes(np.zeros(2))
-    # Standing, every body of the feet is turned as the world is.
-    r, area = np.array([patch.p_BoQ_B for patch in patches]), np.array([patch.area for patch in patches])
-    stable = largest_contact_step(
-        plant.CalcMassMatrix(context),
-        J,
-        patch_impedance(r, area, R_SW, parameters.normal_stiffness, parameters.spring_stiffness),
-        patch_impedance(r, area, R_SW, parameters.normal_damping, parameters.velocity_stiffness),
-        joint_law,
-        _in_velocities(human, human.kp),
-    )
-    if plant.time_step() > stable:
-        raise ParameterError(
-            f"asperity: unstable at time_step {plant.time_step():g} s; allowed: steps up to {round_down(stable):g} s "
-            "with these joints, stiffness and damping; lower simulation.time_step"
-        )
+def exclude_unused_contact_sets(plant: MultibodyPlant, scene_graph: SceneGraph, unused_sets: tuple[str, ...]) -> None:
+    """Filter the foot geometry of some sets out of all collisions of a finalized plant."""
+    inspector = scene_graph.model_inspector()
+    unused, everything = GeometrySet(), GeometrySet()
+    for index in map(BodyIndex, range(plant.num_bodies())):
+        for geometry in plant.GetCollisionGeometriesForBody(plant.get_body(index)):
+            everything.Add(geometry)
+            if any(unused_set in inspector.GetName(geometry) for unused_set in unused_sets):
+                unused.Add(geometry)
+    filters = scene_graph.collision_filter_manager()
+    filters.Apply(CollisionFilterDeclaration().ExcludeWithin(unused).ExcludeBetween(unused, everything))

@@ -54,7 +54,7 @@ ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), fr
 
 @app.command(
     epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
-    "humanwalk walk thesis --set gait.path.step_height=0.12 --set contact=hydroelastic"
+    "humanwalk walk thesis --set controller.thesis.gait.path.step_height=0.12 --set contact=hydroelastic"
 )
 def walk(
     scenario: ScenarioArgument = "thesis",
@@ -337,12 +337,20 @@ def scenarios() -> None:
     """List the scenarios that come with humanwalk."""
     from rich.table import Table
 
+    from humanwalk.choices import CONTACTS
+    from humanwalk.quantity import tag_of
     from humanwalk.scenario import load_scenario, shipped_scenarios
 
     table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "what it is")
     for name in shipped_scenarios():
         loaded = load_scenario(name)
-        table.add_row(name, f"{loaded.duration:g}", f"{loaded.commanded_speed:g}", loaded.contact, loaded.description)
+        table.add_row(
+            name,
+            f"{loaded.duration:g}",
+            f"{loaded.controller.commanded_speed or 0.0:g}",
+            tag_of(CONTACTS, loaded.contact),
+            loaded.description,
+        )
     Console().print(table)
 
 
@@ -379,7 +387,7 @@ def diagram(
     ] = False,
 ) -> None:
     """Draw the block diagram of a scenario's systems."""
-    from humanwalk.diagrams.choose import make_diagram
+    from humanwalk.diagrams.walker import make_diagram
     from humanwalk.scenario import load_scenario
     from humanwalk.view.diagram_picture import draw_diagram
 
@@ -426,6 +434,6 @@ def _overrides(pairs: list[str]) -> dict[str, str]:
     for pair in pairs:
         key, equals, value = pair.partition("=")
         if not equals or not key:
-            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like gait.ramp.speed=1.2")
+            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
         overrides[key] = value
     return overrides

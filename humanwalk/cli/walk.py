@@ -88,13 +88,15 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
         ParameterError: the recording cannot be read.
     """
     time = read_motion_table(recording).time
-    # JSON is YAML, and quotes whatever a path may hold.
-    overrides = {"follow.file": json.dumps(str(recording.resolve())), "duration": repr(float(time[-1] - time[0]))}
-    overrides["description"] = json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}")
-    overrides["follow.kinematic"] = str(kinematic).lower()
+    recorded = {"angles": str(recording.resolve()), "kinematic": kinematic}
     if mapping is not None:
-        overrides["follow.mapping"] = json.dumps(str(mapping.resolve()))
-    return overrides
+        recorded["mapping"] = str(mapping.resolve())
+    # JSON is YAML, and quotes whatever a path may hold.
+    return {
+        "controller": json.dumps({"recorded": recorded}),
+        "duration": repr(float(time[-1] - time[0])),
+        "description": json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}"),
+    }
 
 
 def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydrake.common.eigen_geometry import AngleAxis, Quaternion
 
-from humanwalk.control.pd_control import PdLaw
-from humanwalk.control.pd_laws import PD_LAWS, linear_update
+from humanwalk.control.pd_laws import StepImpedance, linear_update
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import quantity
@@ -72,7 +71,7 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
 
 
 def largest_support_step(
-    M: Array, kp: Array, kd: Array, law: PdLaw, parameters: BalanceSupportParameters, upper: float = 0.1
+    M: Array, kp: Array, impedance: StepImpedance, parameters: BalanceSupportParameters, upper: float = 0.1
 ) -> float:
     """Largest step [s] at which the support, which acts explicitly, is stable on a body with joint PD.
 
@@ -80,8 +79,8 @@ def largest_support_step(
 
     Args:
         M: mass matrix, shape (6 + n, 6 + n), the pelvis' rows [rotation; translation] first.
-        kp, kd: gains of the n joints.
-        law: discretization of the joints' PD law.
+        kp: stiffness of the n joints [N m/rad].
+        impedance: of the joints' law in a step, see `StepImpedance`.
         parameters: the support.
         upper: longest step that is considered [s].
     """
@@ -90,7 +89,7 @@ def largest_support_step(
     K = np.concatenate((stiffness, kp))
 
     def update(h: float) -> Array:
-        implicit, explicit = PD_LAWS[law].impedance(h, kp, kd)
+        implicit, explicit = impedance(h)
         return linear_update(h, M, np.concatenate((np.zeros(6), implicit)), np.concatenate((h * damping, explicit)), K)
 
     return largest_stable_step(update, upper)

@@ -1,5 +1,6 @@
 """Three discretizations of the PD law of the joints: what the plant computes of it, and when that is stable."""
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -11,6 +12,9 @@ from humanwalk.control.pd_control import PdLaw
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import largest_stable_step, round_down
 from humanwalk.quantity import ParameterError
+
+StepImpedance = Callable[[float], tuple[Array, Array]]
+"""Of a step h [s]: the diagonals of D and E of a law, shape (n,) each [kg m2]; see `PdDiscretization`."""
 
 
 class PdDiscretization(Protocol):
@@ -143,6 +147,6 @@ def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> N
     stable = largest_pd_step(base_first_mass_matrix(plant, plant.CreateDefaultContext()), kp, kd, law)
     if plant.time_step() > stable:
         raise ParameterError(
-            f"actuators.law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
+            f"actuation.pd.law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
             f"{round_down(stable):g} s with these gains; use law: implicit, softer gains, or that step"
         )

@@ -1,78 +1,67 @@
-"""Kinematic playback as a Diagram: gait, inverse kinematics, picture; no physics."""
+"""Kinematic playback as a Diagram: reference and picture, no physics."""
 
+import numpy as np
 from pydrake.geometry import SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
-from humanwalk.choices.reference import add_walking_reference, make_recorded_motion
-from humanwalk.choices.start import require_reachable
-from humanwalk.contact.ground_properties import ground_properties
+from humanwalk.choices.world import World
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
-from humanwalk.systems.posture_interpolator import PostureInterpolator
-from humanwalk.systems.recorded_posture_source import RecordedPostureSource
-from humanwalk.terrain import Plane
+from humanwalk.systems.signal import signals_of
 
 
 def make_playback(scenario: Scenario) -> Diagram:
-    """Wire the walking reference of a scenario straight to the picture: what the walker would do if it could.
+    """Wire a scenario's reference straight to the picture: the motion that the controller commands.
 
-    Subsystems by name: scene_graph, gait, arms, inverse_kinematics, interpolator, playback_state, body_observer; with a
-    recording it stands in for gait, arms, inverse_kinematics and interpolator.
+    Subsystems by name: scene_graph, playback_state, body_observer, to_pose, and those of the reference: gait, arms,
+    inverse_kinematics, interpolator (thesis), or recording (recorded).
 
-    Exported outputs:
-        state (97): plant state [q; v].
-        desired_state (84): desired joint angles [rad], rates [rad/s].
-        soles (6), com (6): see BodyObserver.
-        ik_status (6): see InverseKinematicsSolver; not with a recording.
-        query_object: SceneGraph's, for a visualiser.
+    Exported outputs: state (97), desired_state (84), query_object, and every `Signal` of a subsystem under its name.
 
     Raises:
-        ParameterError: the scenario's gait or recording cannot be followed.
+        ParameterError: the controller has no reference, or the body cannot follow it.
     """
-    if not scenario.follow.file:
-        require_reachable(scenario)
     builder = DiagramBuilder()
     scene_graph = builder.AddNamedSystem("scene_graph", SceneGraph())
-    # The plant only says where its geometry is; it is no part of the diagram.
+    # The plant only places the geometry; it is not part of the diagram.
     plant = MultibodyPlant(time_step=0.0)
-    plant.RegisterAsSourceForSceneGraph(scene_graph)
-    add_human(plant, scenario.subject)
-    Plane().add_to(plant, ground_properties)
+    source = plant.RegisterAsSourceForSceneGraph(scene_graph)
+    instance = add_human(plant, scenario.subject)
+    scenario.terrain.add_to(plant, scenario.contact.ground_properties)
     plant.Finalize()
-    state = builder.AddNamedSystem("playback_state", PlaybackState(plant))
-    body = builder.AddNamedSystem("body_observer", BodyObserver(plant))
+    none = np.zeros(plant.num_actuators())
+    world = World(
+        builder=builder,
+        plant=plant,
+        instance=instance,
+        scene_graph=scene_graph,
+        subject=scenario.subject,
+        terrain=scenario.terrain,
+        start=scenario.start,
+        seed=scenario.seed,
+        kp=none,
+        kd=none,
+        step_impedance=lambda step: (none, none),
+    )
+    pelvis_reference, desired_state = scenario.controller.add_reference(world)
+    playback = world.add(
+        "playback_state", PlaybackState(plant), pelvis_reference=pelvis_reference, desired_state=desired_state
+    )
+    state = playback.GetOutputPort("state")
+    world.add("body_observer", BodyObserver(plant), state=state)
     to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
-
-    if scenario.follow.file:
-        source = builder.AddNamedSystem("recording", RecordedPostureSource(make_recorded_motion(scenario)))
-        pelvis, desired_state = source.GetOutputPort("pelvis_reference"), source.GetOutputPort("desired_state")
-    else:
-        reference = add_walking_reference(builder, scenario)
-        solver = reference.inverse_kinematics
-        builder.Connect(reference.gait.GetOutputPort("sole_targets"), solver.GetInputPort("sole_targets"))
-        builder.Connect(reference.arms.GetOutputPort("posture"), solver.GetInputPort("posture"))
-        pelvis = reference.gait.GetOutputPort("pelvis_reference")
-        interpolator = builder.AddNamedSystem("interpolator", PostureInterpolator(plant.num_actuators()))
-        builder.Connect(solver.GetOutputPort("previous_state"), interpolator.GetInputPort("previous_state"))
-        builder.Connect(solver.GetOutputPort("previous_time"), interpolator.GetInputPort("previous_time"))
-        builder.Connect(solver.GetOutputPort("desired_state"), interpolator.GetInputPort("next_state"))
-        builder.Connect(solver.GetOutputPort("sample_time"), interpolator.GetInputPort("next_time"))
-        desired_state = interpolator.GetOutputPort("desired_state")
-        builder.ExportOutput(solver.GetOutputPort("status"), "ik_status")
-    builder.Connect(pelvis, state.GetInputPort("pelvis_reference"))
-    builder.Connect(desired_state, state.GetInputPort("desired_state"))
-    builder.Connect(state.GetOutputPort("state"), body.GetInputPort("state"))
-    builder.Connect(state.GetOutputPort("state"), to_pose.get_input_port())
-    builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(plant.get_source_id()))
-    builder.ExportOutput(state.GetOutputPort("state"), "state")
-    builder.ExportOutput(body.GetOutputPort("soles"), "soles")
-    builder.ExportOutput(body.GetOutputPort("com"), "com")
-    builder.ExportOutput(desired_state, "desired_state")
-    builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
+    builder.Connect(state, to_pose.get_input_port())
+    builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(source))
+    for name, port in (
+        ("state", state),
+        ("query_object", scene_graph.get_query_output_port()),
+        *((signal.name, signal.port) for signal in signals_of(builder.GetSystems())),
+    ):
+        builder.ExportOutput(port, name)
     diagram = builder.Build()
     diagram.set_name("playback")
     return diagram

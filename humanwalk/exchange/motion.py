@@ -8,9 +8,10 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.markers import markers
 from humanwalk.body.plant import kinematics_plant
-from humanwalk.measures.signals import TIME, matrix, signal_columns
+from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
+from humanwalk.systems.signal import state_columns
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class GroundForce:
 def positions(run: Run) -> Array:
     """Plant positions q of every row, shape (rows, 49)."""
     joints = JointMap.of(kinematics_plant(run.scenario.subject))
-    return matrix(run.signals, signal_columns(joints)["state"][: joints.num_positions])
+    return matrix(run.signals, state_columns(joints)[: joints.num_positions])
 
 
 def marker_paths(run: Run) -> dict[str, Array]:

@@ -31,7 +31,6 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.measures.summary import steady_from
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import Scenario
@@ -206,7 +205,7 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
     Raises:
         ParameterError: fewer than FEWEST_STRIDES strides of a leg, or a way that does not lead straight ahead.
     """
-    begin = steady_from(scenario)
+    begin = scenario.controller.steady_from(scenario.subject)
     feet = {side: events_of(signals, side, begin) for side in SIDES}
     _require_walk(signals, feet, begin)
     curves = {

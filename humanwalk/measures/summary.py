@@ -9,16 +9,12 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
-from humanwalk.choices.reference import make_gait
 from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.scenario import Scenario
-
-SETTLING = 2.0
-"""Time that the balanced walk takes to settle after its first ramp [s]."""
 
 
 class Summary(TypedDict):
@@ -64,11 +60,13 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     no forces: steps, lift, support, torques and cost are null or none.
     """
     time = signals[TIME].to_numpy()
-    steady = time >= steady_from(scenario)
+    controller = scenario.controller
+    steady_from = controller.steady_from(scenario.subject)
+    steady = time >= steady_from
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
-    physics = not scenario.follow.kinematic
-    supported = physics and scenario.controller == "thesis" and scenario.balance.support.enabled
+    physics = controller.physics
+    supported = "support.force_x_N" in signals.column_names
     summary: Summary = {
         "scenario": name,
         "description": scenario.description,
@@ -77,10 +75,10 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "physics": physics,
         "duration_s": float(time[-1]),
         "fall_time_s": float(time[-1]) if end == "fell" else None,
-        "steady_from_s": steady_from(scenario),
+        "steady_from_s": steady_from,
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
-        "commanded_speed_m_s": None if scenario.follow.file else scenario.commanded_speed,
+        "commanded_speed_m_s": controller.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
         "foot_lift_m": of_feet(lambda side: foot_lift(signals, side) if physics else None),
         "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
@@ -99,27 +97,10 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "realtime_factor": float(time[-1]) / wall_time,
         "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
         "seed": scenario.seed,
-        "gait": gait_measures(signals, steady_from(scenario)) if physics else None,
+        "gait": gait_measures(signals, steady_from) if physics else None,
     }
     finite: Summary = _finite(summary)
     return finite
-
-
-def steady_from(scenario: Scenario) -> float:
-    """Time [s] from which the walk is steady: the ramp is over and the first foot has landed.
-
-    A recording is taken to be steady from when it runs at full speed.
-    """
-    if scenario.follow.file:
-        return scenario.follow.ease_in
-    if scenario.controller == "balanced":
-        command = scenario.balanced.command
-        if not command.points:
-            return 0.0
-        first = command.points[0]
-        ramp = abs(complex(first.forward, first.sideways)) / command.acceleration
-        return first.time + scenario.balanced.planner.timing.weight_shift + ramp + SETTLING
-    return float(max(scenario.gait.ramp.duration, make_gait(scenario).start_time))
 
 
 def foot_lift(signals: pa.Table, side: Side) -> float | None:

@@ -19,7 +19,7 @@ from humanwalk.files import WRITABLE, file_errors, make_folder, read_regular, re
 from humanwalk.measures.signals import TIME, column_of, unit_of
 from humanwalk.measures.summary import Summary
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, printable
+from humanwalk.quantity import ParameterError, file_paths, printable
 from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance
 from humanwalk.run.stored import MAX_ROWS, RunSummary, read_signals, read_summary
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
@@ -29,8 +29,6 @@ SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
-RECORDING = "recording"
-MAPPING = "mapping.yaml"
 """Copies of what the run followed; the recording has its own suffix."""
 
 READABLE = "a run folder that you may read; check its permissions"
@@ -73,8 +71,8 @@ class Run:
             ParameterError: it is no scenario, or follows a file outside the run folder.
         """
         scenario = load_scenario(self.path / SCENARIO)
-        for followed in filter(None, (scenario.follow.file, scenario.follow.mapping)):
-            require_inside(self.path, Path(followed))
+        for file in file_paths(scenario.controller).values():
+            require_inside(self.path, Path(file))
         return scenario
 
     @cached_property
@@ -89,7 +87,7 @@ class Run:
 
     def require_physics(self) -> None:
         """Raise ParameterError unless there are torques and forces."""
-        if self.scenario.follow.kinematic:
+        if not self.scenario.controller.physics:
             raise ParameterError(
                 f"{printable(self.path)}: a kinematic run has no forces and no torques; allowed: one with physics; "
                 "walk again without --kinematic"
@@ -214,7 +212,7 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
     # A recording that cannot be read is refused by its reader.
     with suppress(OSError, ValueError):
-        needed += Path(scenario.follow.file).stat().st_size if scenario.follow.file else 0
+        needed += sum(Path(file).stat().st_size for file in file_paths(scenario.controller).values())
     with file_errors(folder, WRITABLE):
         free = shutil.disk_usage(folder).free
     if free < needed:
@@ -247,14 +245,18 @@ def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: Summar
 
 
 def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
-    """Copy the recording and the mapping that a scenario follows; returns the scenario that follows the copies."""
-    follow = scenario.follow
-    recording = follow.file and RECORDING + Path(follow.file).suffix.lower()
-    mapping = follow.mapping and MAPPING
-    for source, name in ((follow.file, recording), (follow.mapping, mapping)):
-        if source and not (path / name).exists():
+    """Copy the files that a scenario's controller reads; returns the scenario that reads the copies."""
+    files = file_paths(scenario.controller)
+    names = {field: kept_name(field, file) for field, file in files.items()}
+    for field, name in names.items():
+        if not (path / name).exists():
             # One that was moved during the simulation is missing in the run folder, unless a checkpoint has copied it.
             with suppress(ParameterError):
-                content = read_regular(Path(source), MAX_FOLLOWED_BYTES)
+                content = read_regular(Path(files[field]), MAX_FOLLOWED_BYTES)
                 write_whole(path / name, methodcaller("write_bytes", content))
-    return replace(scenario, follow=replace(follow, file=recording, mapping=mapping))
+    return replace(scenario, controller=replace(scenario.controller, **names))
+
+
+def kept_name(field: str, file: str) -> str:
+    """Name in a run folder of the copy of a file that a field of the controller names."""
+    return f"{field}{Path(file).suffix.lower()}"

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.files import read_regular
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.scenario import Scenario, dump_scenario
 
 PACKAGES = ("humanwalk", "drake", "numpy")
@@ -26,19 +26,17 @@ class Provenance(TypedDict):
     seed: int
     scenario_sha256: str
     signals_sha256: str
-    recording_sha256: str | None
-    mapping_sha256: str | None
+    files_sha256: dict[str, str | None]
     versions: dict[str, str]
 
 
 def provenance(scenario: Scenario, signals: pa.Table) -> Provenance:
-    """Seed, versions and SHA-256 of scenario, signals, and followed recording and mapping (null without), for JSON."""
+    """Seed, versions and SHA-256 of scenario, signals and the files that the controller reads, for JSON."""
     return {
         "seed": scenario.seed,
         "scenario_sha256": scenario_hash(scenario),
         "signals_sha256": signals_hash(signals),
-        "recording_sha256": file_hash(scenario.follow.file),
-        "mapping_sha256": file_hash(scenario.follow.mapping),
+        "files_sha256": {field: file_hash(path) for field, path in file_paths(scenario.controller).items()},
         "versions": versions(),
     }
 
@@ -51,9 +49,8 @@ def versions() -> dict[str, str]:
 
 def scenario_hash(scenario: Scenario) -> str:
     """Of the complete scenario as it is written down, but for where the files are that it follows."""
-    follow = scenario.follow
-    nowhere = replace(follow, file=follow.file and "recording", mapping=follow.mapping and "mapping")
-    return hashlib.sha256(dump_scenario(replace(scenario, follow=nowhere)).encode()).hexdigest()
+    controller = replace(scenario.controller, **{field: field for field in file_paths(scenario.controller)})
+    return hashlib.sha256(dump_scenario(replace(scenario, controller=controller)).encode()).hexdigest()
 
 
 def signals_hash(signals: pa.Table) -> str:

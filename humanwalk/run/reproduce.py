@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import Provenance, file_hash, scenario_hash, versions
 from humanwalk.run.simulate import simulate
@@ -91,9 +91,8 @@ def _changes(run: Run, then: Provenance) -> Iterator[str]:
     """What is not as it was when the run was made."""
     if then["scenario_sha256"] != scenario_hash(run.scenario):
         yield "scenario.yaml was changed since the run, or has fields that this version reads otherwise"
-    follow = run.scenario.follow
-    for path, was in ((follow.file, then["recording_sha256"]), (follow.mapping, then["mapping_sha256"])):
-        if path and _followed_hash(path) != was:
+    for field, path in file_paths(run.scenario.controller).items():
+        if _followed_hash(path) != then["files_sha256"].get(field):
             yield f"{path} was changed since the run"
     now = versions()
     for name, was in then["versions"].items():

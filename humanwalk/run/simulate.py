@@ -12,12 +12,12 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, System
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.choices.start import start_velocities
-from humanwalk.diagrams.choose import make_diagram
 from humanwalk.diagrams.visualizer import add_visualizer
-from humanwalk.measures.signals import Recorder
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
+from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
 from humanwalk.scenario import Scenario
 from humanwalk.terrain import Plane
@@ -79,10 +79,9 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
     diagram = builder.Build()
     diagram.set_name("humanwalk")
     simulator = Simulator(diagram)
-    if plant is not None and not scenario.follow.file:
-        plant.SetVelocities(
-            plant.GetMyMutableContextFromRoot(simulator.get_mutable_context()), start_velocities(scenario)
-        )
+    if plant is not None:
+        context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+        plant.SetVelocities(context, start_velocities(scenario.subject, scenario.start, scenario.seed))
     if plant is not None and scenario.simulation.integrator == "cenic":
         ApplySimulatorConfig(
             SimulatorConfig(

@@ -81,7 +81,7 @@ def read_signals(path: Path, scenario: Scenario, sha256: str) -> pa.Table:
     content = pa.BufferReader(read_regular(path, MAX_SIGNALS_BYTES))
     try:
         file = pq.ParquetFile(content)
-        _check_metadata(path, file.metadata, file.schema_arrow, not scenario.follow.kinematic)
+        _check_metadata(path, file.metadata, file.schema_arrow, scenario.controller.physics)
         table = file.read(use_threads=False)
     except ParameterError:
         raise

@@ -9,12 +9,14 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from humanwalk.body import SIDES
 from humanwalk.control.balance_levels import (
     FootForceBalanceParameters,
     desired_foot_forces,
     foot_shift_rate,
 )
 from humanwalk.numerics import Array
+from humanwalk.systems.signal import Signal, xyz
 
 
 class FootForceBalance(LeafSystem):
@@ -52,6 +54,16 @@ class FootForceBalance(LeafSystem):
                 self.input_port_ticket(self._sole_targets.get_index()),
                 self.discrete_state_ticket(self._state),
             },
+        )
+        self.signals = (
+            Signal(
+                "foot_shift",
+                self.GetOutputPort("shift"),
+                (
+                    *(c for side in SIDES for c in xyz(f"{side.lower()}_foot.shift_", "m")),
+                    *(c for side in SIDES for c in xyz(f"{side.lower()}_foot.shift_velocity_", "m_s")),
+                ),
+            ),
         )
 
     def _shift_and_rate(self, context: Context) -> Array:

@@ -16,6 +16,7 @@ from humanwalk.control.inverse_kinematics import (
 )
 from humanwalk.control.revolute_chain import pose_of
 from humanwalk.numerics import Array
+from humanwalk.systems.signal import Signal
 
 FIRST_KNEE_BEND = 0.3
 """Bend of the knees from which the first solution starts [rad]."""
@@ -88,6 +89,17 @@ class InverseKinematicsSolver(LeafSystem):
         self.DeclareInitializationDiscreteUpdateEvent(self._initialize)
         # The first solution is the initialisation's.
         self.DeclarePeriodicDiscreteUpdateEvent(period, period, self._solve)
+        self.signals = (
+            Signal(
+                "ik_status",
+                self.GetOutputPort("status"),
+                tuple(
+                    f"{side.lower()}_leg.{column}"
+                    for column in ("ik_residual", "ik_iterations", "ik_converged")
+                    for side in SIDES
+                ),
+            ),
+        )
 
     def _initialize(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         desired, *_, previous_time = self._groups

@@ -13,6 +13,7 @@ from pydrake.systems.framework import (
 
 from humanwalk.body.limbs import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS
 from humanwalk.control.balance_levels import UpperBodyBalanceParameters, lean_angles
+from humanwalk.systems.signal import Signal
 
 
 class UpperBodyBalance(LeafSystem):
@@ -57,6 +58,18 @@ class UpperBodyBalance(LeafSystem):
                 self.xd_ticket(),
                 self.input_port_ticket(self._posture.get_index()),
             },
+        )
+        self.signals = (
+            Signal(
+                "alpha",
+                self.GetOutputPort("alpha"),
+                (
+                    "balance.alpha_forward_rad",
+                    "balance.alpha_left_rad",
+                    "balance.alpha_forward_rate_rad_s",
+                    "balance.alpha_left_rate_rad_s",
+                ),
+            ),
         )
 
     def _update(self, context: Context, discrete: DiscreteValues) -> EventStatus:

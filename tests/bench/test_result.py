@@ -195,7 +195,11 @@ def test_a_scenario_is_measured_in_a_process_of_its_own():
 @pytest.mark.slow
 def test_a_walk_that_does_not_last_is_refused_in_a_line():
     with pytest.raises(ParameterError, match=r"thesis: duration: .* shorten --duration") as refusal:
-        bench(["thesis"], {"duration": "2", "balance.support.enabled": "false", "start.pelvis_lift": "0.5"}, 1)
+        bench(
+            ["thesis"],
+            {"duration": "2", "controller.thesis.balance.support.enabled": "false", "start.pelvis_lift": "0.5"},
+            1,
+        )
     assert len(str(refusal.value).splitlines()) == 1
 
 

@@ -4,7 +4,8 @@ from PIL import Image
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.plant import Subject, kinematics_plant
-from humanwalk.measures.signals import TIME, matrix, signal_columns
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.systems.signal import state_columns
 from humanwalk.view.browser import Camera, open_stage
 from humanwalk.view.video import camera
 
@@ -24,7 +25,7 @@ def stage(short_run):
 def states(run, plant: MultibodyPlant, joints, time):
     signals = run.signals
     (row,) = np.flatnonzero(np.isclose(signals[TIME].to_numpy(), time, rtol=0.0, atol=1e-9))
-    return matrix(signals, signal_columns(joints)["state"])[row][: plant.num_positions()]
+    return matrix(signals, state_columns(joints))[row][: plant.num_positions()]
 
 
 @pytest.mark.parametrize("time", FRAME_TIMES)

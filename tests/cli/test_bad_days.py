@@ -10,7 +10,6 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from humanwalk.choices.reference import make_gait
 from humanwalk.cli.walk import _write_or_rescue
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
@@ -228,8 +227,8 @@ def throw(self, context, discrete):
 
 def ended(monkeypatch, tmp_path, begin, breaks, law="implicit"):
     broken_from(monkeypatch, begin, breaks)
-    period = {"simulation.control_period": "0.005"}
-    outcome = simulate(load_scenario("thesis", {"duration": str(begin + 0.1), "actuators.law": law} | period))
+    period = {"controller.thesis.control_period": "0.005"}
+    outcome = simulate(load_scenario("thesis", {"duration": str(begin + 0.1), "actuation.pd.law": law} | period))
     run = outcome.save(tmp_path / "run")
     return outcome, Run.open(run.path)
 
@@ -248,8 +247,8 @@ def test_nan_in_the_controller_ends_the_run_and_keeps_what_was_before(monkeypatc
 
 @pytest.mark.parametrize("phase", ["standing", "first landing", "left swing", "right swing"])
 def test_solver_that_fails_in_a_phase_of_the_gait_leaves_its_record(monkeypatch, tmp_path, phase):
-    gait = make_gait(load_scenario("thesis"))
-    first = gait.start_time
+    scenario = load_scenario("thesis")
+    first = scenario.controller.walk(scenario.subject).start_time
     stride = 0.5 / 0.6 / 1.4
     begin = {
         "standing": 0.05,
@@ -358,7 +357,9 @@ def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
 
     monkeypatch.setattr(whole_body_controller.WholeBodyController, "_update", broken)
     points = "[{time: 0.1, forward: 0.5}]"
-    outcome = simulate(load_scenario("walk", {"duration": str(begin + 0.1), "balanced.command.points": points}))
+    outcome = simulate(
+        load_scenario("walk", {"duration": str(begin + 0.1), "controller.balanced.command.points": points})
+    )
     run = Run.open(outcome.save(tmp_path / "run").path)
     assert outcome.end == "not a number" or outcome.end.startswith("solver failed: ")
     assert run.summary["end"] == outcome.end

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from humanwalk.bench import measure, read_result
+from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.main import app, main
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -150,16 +151,16 @@ def test_walks_without_an_output_go_to_numbered_folders(humanwalk, tmp_path):
 def test_settings_reach_the_run(humanwalk, tmp_path):
     humanwalk(
         *("walk", "--duration", "0.01", "--no-plots", "--no-replay", "-o", "walked"),
-        *("--set", "gait.path.step_height=0.12", "--set", "contact=hydroelastic"),
+        *("--set", "controller.thesis.gait.path.step_height=0.12", "--set", "contact=hydroelastic"),
     )
     scenario = Run.open(tmp_path / "walked").scenario
-    assert (scenario.gait.path.step_height, scenario.contact) == (0.12, "hydroelastic")
+    assert (scenario.controller.gait.path.step_height, scenario.contact) == (0.12, HydroelasticContact())
 
 
 def test_fall_has_an_exit_code_and_a_run(humanwalk, tmp_path):
     code, _, err = humanwalk(
         *("walk", "--duration", "4", "--no-plots", "--no-replay", "-o", "fallen"),
-        *("--set", "balance.support.enabled=false"),
+        *("--set", "controller.thesis.balance.support.enabled=false"),
     )
     assert code == 1
     assert "fell" in err
@@ -191,17 +192,17 @@ def test_interrupted_walk_keeps_its_run(tmp_path):
     [
         (("thesiss",), "thesis"),
         (("none.yaml",), "No such file"),
-        (("--set", "gait.path.step_hight=0.1"), "did you mean step_height?"),
-        (("--set", "gait.path.step_length=50"), "write 0.5 (m)"),
+        (("--set", "controller.thesis.gait.path.step_hight=0.1"), "did you mean step_height?"),
+        (("--set", "controller.thesis.gait.path.step_length=50"), "write 0.5 (m)"),
         (("--set", "subject.mass=-3"), "allowed: 30 to 200 kg"),
-        (("--set", "gait.path.step_height"), "FIELD=VALUE"),
+        (("--set", "controller.thesis.gait.path.step_height"), "FIELD=VALUE"),
         (("--set", "=3"), "FIELD=VALUE"),
         (("--set", "duration=[1"), "not YAML"),
         (("--duration", "-1"), "duration"),
         (("--duration", "nan"), "finite"),
-        (("--set", "gait.path.offset=0.03"), "shorten the step"),
-        (("--set", "gait.path.toe_drop=0"), "Ankle"),
-        (("--set", "actuators.law=explicit"), "implicit"),
+        (("--set", "controller.thesis.gait.path.offset=0.03"), "shorten the step"),
+        (("--set", "controller.thesis.gait.path.toe_drop=0"), "Ankle"),
+        (("--set", "actuation.pd.law=explicit"), "implicit"),
         (("--set", "start.joint_angles.RightLegTibiaMotion=-0.3"), "RightLegTibiaMotion"),
     ],
     ids=str,
@@ -220,7 +221,7 @@ def test_output_that_holds_files_is_refused_and_left_alone(refusal, tmp_path):
 
 def test_empty_folder_that_was_there_stays_when_the_walk_is_refused(refusal, tmp_path):
     (tmp_path / "mine").mkdir()
-    refusal("walk", "-o", "mine", "--no-replay", "--set", "gait.path.offset=0.03")
+    refusal("walk", "-o", "mine", "--no-replay", "--set", "controller.thesis.gait.path.offset=0.03")
 
 
 @pytest.mark.parametrize("output", ["file", "file/run", "/proc/humanwalk"])
@@ -365,7 +366,7 @@ def test_diagram_is_drawn(humanwalk, tmp_path, name, start):
 @needs_dot
 @old_pydot
 def test_diagram_shows_the_systems_of_its_scenario(humanwalk, tmp_path):
-    humanwalk("diagram", "-o", "d.svg", "--set", "balance.upper_body.enabled=true")
+    humanwalk("diagram", "-o", "d.svg", "--set", "controller.thesis.balance.upper_body.enabled=true")
     drawn = (tmp_path / "d.svg").read_text()
     for name in ("gait", "inverse_kinematics", "actuators", "plant", "support", "upper_body_balance"):
         assert name in drawn

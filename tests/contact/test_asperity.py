@@ -144,5 +144,7 @@ def test_friction_is_bound_by_the_lesser_of_force_and_mean_and_never_by_a_pull(n
 
 
 def test_knots_out_of_order_are_refused():
-    with pytest.raises(ParameterError, match=r"asperity.time_multiplier.1.at: 1 comes after 2; .* sort the knots"):
+    with pytest.raises(
+        ParameterError, match=r"contact.asperity.time_multiplier.1.at: 1 comes after 2; .* sort the knots"
+    ):
         AsperityParameters(time_multiplier=(Knot(at=2.0), Knot(at=1.0)))

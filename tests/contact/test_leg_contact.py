@@ -3,7 +3,7 @@
 import pytest
 
 from humanwalk.body.limbs import LEGS
-from humanwalk.diagrams.choose import make_diagram
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.scenario import load_scenario
 
 CROSSED = {leg.hip_abduction: -0.2 for leg in LEGS.values()}
@@ -51,5 +51,5 @@ def test_a_bent_leg_does_not_touch_itself(diagram):
 
 
 def test_without_it_they_pass_through_each_other():
-    ghost = walker(**{"balanced.leg_contact": "false"})
+    ghost = walker(**{"contact.point.leg_contact": "false"})
     assert pairs(ghost, **CROSSED) == set()

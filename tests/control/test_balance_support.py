@@ -1,6 +1,7 @@
 """Assumed balance: a linear spring-damper between the pelvis and its reference."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from humanwalk.body.joint_map import base_first_mass_matrix
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step, support_wrench
-from humanwalk.control.pd_control import ActuatorParameters, joint_gains
+from humanwalk.control.joint_gains import JointGains, joint_gains
+from humanwalk.control.pd_laws import PD_LAWS
 
 K_ROTATION, K, D_ROTATION, D = 5000.0, 30000.0, 300.0, 2500.0
 SUPPORT = BalanceSupportParameters(
@@ -155,17 +157,20 @@ def test_a_heavier_taller_body_is_supported_alike():
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
-def test_the_default_support_is_stable_at_two_milliseconds_with_a_margin(plant, joints, law):
+def test_the_default_support_is_stable_at_two_milliseconds_with_a_margin(plant, law):
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
-    kp, kd = joint_gains(joints.names, M.diagonal()[6:], ActuatorParameters())
-    assert largest_support_step(M, kp, kd, law, BalanceSupportParameters()) > 1.05 * 0.002
+    kp, kd = joint_gains(plant, JointGains())
+    impedance = partial(PD_LAWS[law].impedance, kp=kp, kd=kd)
+    assert largest_support_step(M, kp, impedance, BalanceSupportParameters()) > 1.05 * 0.002
 
 
 @given(mass=st.floats(1.0, 100.0), damping=st.floats(1e3, 1e5))
 def test_a_damped_block_is_stable_as_euler_says(mass, damping):
     """Without joints or stiffness each direction is v' = (1 - h d / m) v."""
     support = BalanceSupportParameters(stiffness=0.0, damping=damping, rotational_stiffness=0.0, rotational_damping=0.0)
-    step = largest_support_step(mass * np.eye(6), np.array([]), np.array([]), "implicit", support, upper=1.0)
+    step = largest_support_step(
+        mass * np.eye(6), np.array([]), lambda h: (np.array([]), np.array([])), support, upper=1.0
+    )
     assert step == pytest.approx(min(1.0, 2.0 * mass / damping), rel=0.011)
 
 
@@ -174,6 +179,8 @@ def test_stiff_joints_let_the_support_take_longer_steps(plant):
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
     n = M.shape[0] - 6
     support = BalanceSupportParameters()
-    loose = largest_support_step(M, np.zeros(n), np.zeros(n), "implicit", support)
-    held = largest_support_step(M, np.full(n, 1e4), np.full(n, 1e2), "implicit", support)
+    loose = largest_support_step(M, np.zeros(n), lambda h: (np.zeros(n), np.zeros(n)), support)
+    held = largest_support_step(
+        M, np.full(n, 1e4), lambda h: (h * np.full(n, 1e2) + h * h * np.full(n, 1e4), np.zeros(n)), support
+    )
     assert loose < held

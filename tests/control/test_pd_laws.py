@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body.joint_map import base_first_mass_matrix
-from humanwalk.control.pd_control import ActuatorParameters, joint_gains
+from humanwalk.control.joint_gains import JointGains, joint_gains
 from humanwalk.control.pd_laws import PD_LAWS, largest_pd_step, linear_update
 
 LAWS = sorted(PD_LAWS)
@@ -70,7 +70,7 @@ def test_a_lighter_joint_needs_a_shorter_step(law):
     assert light < heavy / 2
 
 
-def test_a_free_base_makes_joints_lighter_and_the_step_shorter(mass_matrix, joints):
-    kp, kd = joint_gains(joints.names, mass_matrix.diagonal()[6:], ActuatorParameters())
+def test_a_free_base_makes_joints_lighter_and_the_step_shorter(plant, mass_matrix, joints):
+    kp, kd = joint_gains(plant, JointGains())
     floating, held = (largest_pd_step(M, kp, kd, "explicit") for M in (mass_matrix, mass_matrix[6:, 6:]))
     assert floating <= held * 1.01

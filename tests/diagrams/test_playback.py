@@ -7,7 +7,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body import SIDES
-from humanwalk.choices.reference import make_gait
+from humanwalk.choices import ThesisController
 from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.quantity import ParameterError
@@ -22,7 +22,12 @@ def played(request):
 
 def test_shipped_scenarios_all_play():
     for name in shipped_scenarios():
-        make_playback(load_scenario(name))
+        scenario = load_scenario(name)
+        if isinstance(scenario.controller, ThesisController):
+            make_playback(scenario)
+        else:
+            with pytest.raises(ParameterError, match="without physics"):
+                make_playback(scenario)
 
 
 def test_ports(played):
@@ -30,10 +35,12 @@ def test_ports(played):
     ports = {port.get_name(): port.size() for port in map(playback.get_output_port, range(playback.num_output_ports()))}
     assert ports == {
         "state": 97,
-        "desired_state": 84,
         "soles": 6,
         "com": 6,
         "ik_status": 6,
+        "pelvis_reference": 13,
+        "phase": 2,
+        "contact_schedule": 2,
         "query_object": 0,
     }
     assert playback.num_input_ports() == 0
@@ -48,11 +55,11 @@ def test_no_plant_is_in_the_diagram(played):
 
 def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
     scenario, playback = played
-    gait, skeleton = make_gait(scenario), scenario.subject.skeleton
+    gait, skeleton = scenario.controller.walk(scenario.subject), scenario.subject.skeleton
     context = plant.CreateDefaultContext()
     simulator = Simulator(playback)
     # Samples of the inverse kinematics: between them the desired angles stand still.
-    for time in scenario.simulation.control_period * np.arange(0, 400, 20):
+    for time in scenario.controller.control_period * np.arange(0, 400, 20):
         simulator.AdvanceTo(time)
         simulator.AdvancePendingEvents()
         root = simulator.get_context()
@@ -79,7 +86,8 @@ def test_joints_are_the_desired_ones(played, joints):
     simulator.AdvanceTo(0.3)
     root = simulator.get_context()
     q = playback.GetOutputPort("state").Eval(root)[:49]
-    desired = playback.GetOutputPort("desired_state").Eval(root)
+    between = playback.GetSubsystemByName("interpolator")
+    desired = between.GetOutputPort("desired_state").Eval(between.GetMyContextFromRoot(root))
     np.testing.assert_array_equal(q[joints.q], desired[:42])
     assert (q[joints.q] >= joints.lower - 1e-9).all()
     assert (q[joints.q] <= joints.upper + 1e-9).all()
@@ -99,4 +107,4 @@ def test_picture_shows_the_body_where_the_positions_are(played):
 
 def test_unreachable_gait_is_refused():
     with pytest.raises(ParameterError, match=r"gait\.path\.offset"):
-        make_playback(load_scenario("thesis", {"gait.path.offset": "0.03"}))
+        make_playback(load_scenario("thesis", {"controller.thesis.gait.path.offset": "0.03"}))

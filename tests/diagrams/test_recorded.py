@@ -6,7 +6,6 @@ from pydrake.systems.analysis import Simulator
 
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.opensim_names import COORDINATES
-from humanwalk.choices.reference import make_recorded_motion
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.motion.followed import REQUIRED_JOINTS
@@ -30,22 +29,21 @@ def squat_file(tmp_path):
 
 
 def following(path, **changes):
-    return load_scenario("thesis", {"follow.file": str(path)} | changes)
+    return load_scenario("thesis", {"controller": f"{{recorded: {{angles: {path}}}}}"} | changes)
 
 
 def test_balance_levels_do_not_go_with_a_recording(squat_file):
-    with pytest.raises(ParameterError, match="joint by joint"):
-        following(squat_file, **{"balance.upper_body.enabled": "true"})
+    with pytest.raises(ParameterError, match=r"controller\.thesis|controller is"):
+        following(squat_file, **{"controller.thesis.balance.upper_body.enabled": "true"})
 
 
 def test_playback_shows_the_recording_exactly(squat_file, joints):
     scenario = following(squat_file)
     playback = make_playback(scenario)
-    motion = make_recorded_motion(scenario)
+    motion = scenario.controller.motion(scenario.subject, scenario.terrain)
     context = playback.CreateDefaultContext()
     context.SetTime(0.8)
     angles, _ = motion.joints(0.8)
-    np.testing.assert_allclose(playback.GetOutputPort("desired_state").Eval(context)[:42], angles, atol=1e-12)
     np.testing.assert_allclose(playback.GetOutputPort("state").Eval(context)[joints.q], angles, atol=1e-12)
 
 
@@ -57,7 +55,7 @@ def test_walker_follows_the_recording_with_the_support(squat_file, joints):
     simulator.AdvanceTo(0.6)
     context = simulator.get_context()
     state = walker.GetOutputPort("state").Eval(context)
-    wanted, _ = make_recorded_motion(scenario).joints(0.6)
+    wanted, _ = scenario.controller.motion(scenario.subject, scenario.terrain).joints(0.6)
     assert wanted[joints.names.index(LEGS["Right"].knee)] > 0.3
     np.testing.assert_allclose(joints.positions(state), wanted, atol=0.05)
     np.testing.assert_allclose(state[4:7], walker.GetOutputPort("pelvis_reference").Eval(context)[4:7], atol=0.03)

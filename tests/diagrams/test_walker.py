@@ -9,32 +9,36 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 
 from humanwalk.body import HYDRO_SET, POINT_SET, SIDES
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.diagrams.choose import make_diagram
-from humanwalk.diagrams.walker import make_walker
+from humanwalk.diagrams.walker import make_diagram, make_walker
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, load_scenario
 
 N = 42
 GRAVITY = 9.81
 
-STAND = {"gait.ramp.speed": "0"}
-SEMI_IMPLICIT = {"actuators.law": "semi_implicit"}
-IMPLICIT = {"actuators.law": "implicit"}
-LEVELS = {"balance.foot_force.enabled": "true", "balance.upper_body.enabled": "true"}
-UNSUPPORTED = {"balance.support.enabled": "false"}
+STAND = {"controller.thesis.gait.ramp.speed": "0"}
+SEMI_IMPLICIT = {"actuation.pd.law": "semi_implicit"}
+IMPLICIT = {"actuation.pd.law": "implicit"}
+LEVELS = {
+    "controller.thesis.balance.foot_force.enabled": "true",
+    "controller.thesis.balance.upper_body.enabled": "true",
+}
+UNSUPPORTED = {"controller.thesis.balance.support.enabled": "false"}
 HYDROELASTIC = {"contact": "hydroelastic"}
 ASPERITY = {"contact": "asperity"}
 CENIC = {"simulation.integrator": "cenic", "simulation.time_step": "0"}
 EXPLICIT = {
-    "actuators.law": "explicit",
-    "actuators.preset": "damped",
-    "actuators.stiffness_scale": "0.04",
+    "actuation.pd.law": "explicit",
+    "controller.thesis.gains.preset": "damped",
+    "controller.thesis.gains.stiffness_scale": "0.04",
     "simulation.time_step": "0.0003",
 }
 
 PORTS = {
     "state": 97,
+    "net_actuation": N,
     "query_object": 0,
+    "push": 3,
     "contact_results": 0,
     "torque": N,
     "saturated": N,
@@ -165,13 +169,16 @@ def test_start_that_the_body_cannot_take_is_refused(key, value, said):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"gait.path.offset": "0.03"}, ("gait.path.offset", "0.037", "step_length")),
-        ({"gait.path.step_length": "1"}, ("gait.path.offset", "shorten the step")),
-        ({"gait.path.toe_drop": "0"}, ("RightLegAnkleMotion", "toe_drop")),
-        ({"gait.path.step_height": "0.4"}, ("RightLegAnkleMotion", "step_height")),
-        ({"gait.path.toe_drop": "1.2"}, ("gait.path.toe_drop", "into the ground")),
-        ({"actuators.law": "explicit"}, ("actuators.law", "unstable", "implicit")),
-        ({"actuators.gains": "{RightLegTibaMotion: {kp: 1}}"}, ("no such joint", "RightLegTibiaMotion")),
+        (
+            {"controller.thesis.gait.path.offset": "0.03"},
+            ("controller.thesis.gait.path.offset", "0.037", "step_length"),
+        ),
+        ({"controller.thesis.gait.path.step_length": "1"}, ("controller.thesis.gait.path.offset", "shorten the step")),
+        ({"controller.thesis.gait.path.toe_drop": "0"}, ("RightLegAnkleMotion", "toe_drop")),
+        ({"controller.thesis.gait.path.step_height": "0.4"}, ("RightLegAnkleMotion", "step_height")),
+        ({"controller.thesis.gait.path.toe_drop": "1.2"}, ("controller.thesis.gait.path.toe_drop", "into the ground")),
+        ({"actuation.pd.law": "explicit"}, ("actuation.pd.law", "unstable", "implicit")),
+        ({"controller.thesis.gains.joints": "{RightLegTibaMotion: {kp: 1}}"}, ("no such joint", "RightLegTibiaMotion")),
     ],
     ids=str,
 )
@@ -186,9 +193,9 @@ def test_gait_or_gains_that_cannot_work_are_refused(change, said):
 
 def test_the_offset_that_is_named_as_a_mend_works():
     with pytest.raises(ParameterError) as raised:
-        make_walker(thesis({"gait.path.offset": "0.03"}))
+        make_walker(thesis({"controller.thesis.gait.path.offset": "0.03"}))
     offset = str(raised.value).partition("set offset: ")[2].partition(",")[0]
-    make_walker(thesis({"gait.path.offset": offset}))
+    make_walker(thesis({"controller.thesis.gait.path.offset": offset}))
 
 
 # Variants.
@@ -292,7 +299,7 @@ def test_the_step_that_is_named_as_a_mend_for_asperity_works():
 def test_effort_limits_bound_the_torque_only_where_the_scenario_has_them(law, joints):
     excess = {}
     for kind in ("human", "none"):
-        walked = Walked(thesis({"actuators.effort_limits": kind, "actuators.law": law}), 0.25)
+        walked = Walked(thesis({"actuation.pd.effort_limits": kind, "actuation.pd.law": law}), 0.25)
         share = np.abs(walked.torque) / joints.effort_limits
         saturated = np.array(walked.saturated)
         excess[kind] = share.max() - 1.0

@@ -5,17 +5,17 @@ import pyarrow as pa
 import pytest
 from scipy.spatial.transform import Rotation
 
-from humanwalk.measures.signals import TIME, signal_columns
+from humanwalk.measures.signals import TIME
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
 ROWS = 81
 
 
-def made_up_signals(joints) -> pa.Table:
+def made_up_signals(columns) -> pa.Table:
     """Every column a wave of its own; a pelvis that turns; a right foot that lands twice, a left one never."""
     time = 0.005 * np.arange(ROWS)
-    names = [name for columns in signal_columns(joints).values() for name in columns]
+    names = columns
     data = {name: 0.3 + 0.2 * np.sin(3 * time + i) for i, name in enumerate(names)}
     turns = Rotation.from_euler("zyx", np.column_stack((2 * time, 0.3 * time, -0.2 * time)))
     quaternion = turns.as_quat(scalar_first=True).T
@@ -34,8 +34,8 @@ def made_up_signals(joints) -> pa.Table:
 
 
 @pytest.fixture(scope="session")
-def signals(joints):
-    return made_up_signals(joints)
+def signals(columns):
+    return made_up_signals(columns)
 
 
 @pytest.fixture(scope="session")

@@ -20,7 +20,6 @@ from humanwalk.measures.human_likeness import (
     people_com_excursion,
 )
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import steady_from
 from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import load_scenario
 
@@ -182,8 +181,8 @@ def test_what_is_no_straight_walk_is_refused(walk, scenario, made, said):
 
 
 def test_only_steady_strides_count(walk):
-    scenario = load_scenario("thesis", {"gait.ramp.duration": "3.5"})
-    assert steady_from(scenario) == 3.5
+    scenario = load_scenario("thesis", {"controller.thesis.gait.ramp.duration": "3.5"})
+    assert scenario.controller.steady_from(scenario.subject) == 3.5
     # Landings at 4, 5, 6, 7, 8 s.
     assert compare(walk(), scenario).strides["Right"] == 4
 

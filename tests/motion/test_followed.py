@@ -10,8 +10,8 @@ from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.motion.followed import REQUIRED_JOINTS, followed_motion
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.motion.recorded_motion import MotionMapping
+from humanwalk.parameter_file import load_as
 from humanwalk.quantity import ParameterError
-from humanwalk.scenario import load_as
 from humanwalk.terrain import Plane
 
 TIME = np.arange(0, 1.001, 0.02)

@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from humanwalk.measures.signals import TIME, signal_columns
+from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder
 from humanwalk.run.outcome import Outcome
@@ -14,9 +14,8 @@ from humanwalk.scenario import load_scenario
 
 
 @pytest.fixture
-def outcome(joints):
+def outcome(columns):
     time = 0.005 * np.arange(50)
-    columns = [name for names in signal_columns(joints).values() for name in names]
     signals = pa.table({TIME: time, **{name: np.full_like(time, i) for i, name in enumerate(columns)}})
     return Outcome(load_scenario("thesis", {"seed": "5", "duration": "0.5"}), signals, "completed", wall_time=1.0)
 

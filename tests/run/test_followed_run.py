@@ -9,7 +9,6 @@ import pytest
 from typer.testing import CliRunner
 
 from humanwalk.body.opensim_names import COORDINATES
-from humanwalk.choices.reference import make_recorded_motion
 from humanwalk.cli.main import app, main
 from humanwalk.motion.followed import REQUIRED_JOINTS
 from humanwalk.motion.motion_table import MotionTable, storage_text
@@ -36,6 +35,15 @@ def write_mot(path, columns):
     return path
 
 
+def following(recording, more=""):
+    """Overrides for a scenario that follows a recording."""
+    return {"controller": f"{{recorded: {{angles: {recording}, {more}}}}}"}
+
+
+def motion_of(scenario):
+    return scenario.controller.motion(scenario.subject, scenario.terrain)
+
+
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory):
     """The run of a followed recording with a mapping, walked by the command; both files are gone since."""
@@ -59,15 +67,15 @@ def run(walked, tmp_path):
 
 def test_recording_and_mapping_are_kept_with_their_hashes(run, walked):
     told = run.summary["provenance"]
-    assert (told["recording_sha256"], told["mapping_sha256"]) == walked[1]
-    assert file_hash(str(run.path / "recording.mot")) == told["recording_sha256"]
-    assert file_hash(str(run.path / "mapping.yaml")) == told["mapping_sha256"]
-    assert run.scenario.follow.file == str(run.path / "recording.mot")
+    assert (told["files_sha256"]["angles"], told["files_sha256"]["mapping"]) == walked[1]
+    assert file_hash(str(run.path / "angles.mot")) == told["files_sha256"]["angles"]
+    assert file_hash(str(run.path / "mapping.yaml")) == told["files_sha256"]["mapping"]
+    assert run.scenario.controller.angles == str(run.path / "angles.mot")
     assert {entry.name for entry in run.path.iterdir()} == {
         "scenario.yaml",
         "signals.parquet",
         "summary.json",
-        "recording.mot",
+        "angles.mot",
         "mapping.yaml",
     }
 
@@ -83,47 +91,48 @@ def test_moved_run_is_walked_again_from_its_scenario(run, tmp_path, monkeypatch)
     result = CliRunner().invoke(app, ["walk", str(run.path / "scenario.yaml"), "-o", "again", *quick])
     assert result.exit_code == 0, result.output
     again = Run.open(tmp_path / "again")
-    assert again.summary["provenance"]["recording_sha256"] == run.summary["provenance"]["recording_sha256"]
+    assert again.summary["provenance"]["files_sha256"] == run.summary["provenance"]["files_sha256"]
     np.testing.assert_array_equal(again["com.z"], run["com.z"][: again.signals.num_rows])
 
 
-@pytest.mark.parametrize("name", ["recording.mot", "mapping.yaml"])
+@pytest.mark.parametrize("name", ["angles.mot", "mapping.yaml"])
 def test_copy_that_was_changed_is_noted(run, name):
     (run.path / name).write_text((run.path / name).read_text() + "\n")
     assert [note for note in reproduce(run).notes if note.endswith(f"{name} was changed since the run")]
 
 
 def test_copy_that_is_gone_is_said(run):
-    (run.path / "recording.mot").unlink()
+    (run.path / "angles.mot").unlink()
     with pytest.raises(ParameterError, match=r"recording\.mot is gone"):
         reproduce(Run.open(run.path))
 
 
 def test_hash_of_a_scenario_does_not_know_where_its_files_are(tmp_path):
-    here, there = (load_scenario("thesis", {"follow.file": f"{folder}/t.mot"}) for folder in ("a", "b"))
+    here, there = (load_scenario("thesis", following(f"{folder}/t.mot")) for folder in ("a", "b"))
     assert scenario_hash(here) == scenario_hash(there)
-    assert scenario_hash(here) != scenario_hash(load_scenario("thesis", {"follow.ease_in": "0.5"}))
+    assert scenario_hash(here) != scenario_hash(load_scenario("thesis", following("a/t.mot", "ease_in: 0.5")))
 
 
 def test_files_of_a_scenario_stand_beside_it(tmp_path, monkeypatch):
     (tmp_path / "lab").mkdir()
-    (tmp_path / "lab" / "mine.yaml").write_text("follow: {file: t.mot, mapping: ../map.yaml}\n")
+    (tmp_path / "lab" / "mine.yaml").write_text("controller: {recorded: {angles: t.mot, mapping: ../map.yaml}}\n")
     monkeypatch.chdir(tmp_path)
-    follow = load_scenario("lab/mine.yaml").follow
-    assert (follow.file, follow.mapping) == ("lab/t.mot", "lab/../map.yaml")
+    recorded = load_scenario("lab/mine.yaml").controller
+    assert (recorded.angles, recorded.mapping) == ("lab/t.mot", "lab/../map.yaml")
     # What is set on the command line is said from where one stands; a full path stays.
-    assert load_scenario("lab/mine.yaml", {"follow.file": "other.mot"}).follow.file == "other.mot"
-    (tmp_path / "lab" / "mine.yaml").write_text(f"follow: {{file: {tmp_path}/t.mot}}\n")
-    assert load_scenario("lab/mine.yaml").follow.file == f"{tmp_path}/t.mot"
+    other = load_scenario("lab/mine.yaml", {"controller.recorded.angles": "other.mot"})
+    assert other.controller.angles == "other.mot"
+    (tmp_path / "lab" / "mine.yaml").write_text(f"controller: {{recorded: {{angles: {tmp_path}/t.mot}}}}\n")
+    assert load_scenario("lab/mine.yaml").controller.angles == f"{tmp_path}/t.mot"
 
 
 def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
     recording = write_mot(tmp_path / "t.mot", bend())
-    outcome = simulate(load_scenario("thesis", {"follow.file": str(recording), "duration": "0.01"}))
+    outcome = simulate(load_scenario("thesis", following(recording) | {"duration": "0.01"}))
     recording.rename(tmp_path / "moved.mot")
     run = outcome.save(tmp_path / "run")
-    assert run.scenario.follow.file == str(run.path / "recording.mot")
-    assert run.summary["provenance"]["recording_sha256"] is None
+    assert run.scenario.controller.angles == str(run.path / "angles.mot")
+    assert run.summary["provenance"]["files_sha256"]["angles"] is None
     with pytest.raises(ParameterError, match=r"recording\.mot is gone"):
         reproduce(run)
 
@@ -148,7 +157,7 @@ def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
         "scenario.yaml",
         "signals.parquet",
         "summary.json",
-        "recording.mot",
+        "angles.mot",
         "replay.html",
     }
     assert run.summary["physics"] is False
@@ -157,7 +166,7 @@ def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
 
 def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
     run, _ = kinematic
-    motion = make_recorded_motion(run.scenario)
+    motion = run.scenario.controller.motion(run.scenario.subject, run.scenario.terrain)
     for row in (0, 20, -1):
         angles, rates = motion.joints(run.time[row])
         for i, name in enumerate(joints.names):
@@ -199,8 +208,8 @@ def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
 @pytest.mark.parametrize(
     ("overrides", "said"),
     [
-        ({"follow.kinematic": "true"}, "follow.kinematic: true without a recording"),
-        ({"follow.file": "t.mot", "controller": "balanced"}, "allowed: with controller thesis"),
+        ({"controller": "recorded"}, "controller.recorded.angles: no recording"),
+        ({"controller.recorded.angles": "t.mot"}, "controller is thesis"),
     ],
 )
 def test_what_cannot_be_followed_is_refused(overrides, said):
@@ -219,9 +228,9 @@ def test_kinematic_without_a_recording_is_refused(tmp_path):
 
 def test_angle_beyond_its_range_is_moved_and_told_in_a_line(tmp_path, caplog, joints):
     columns = bend() | {"knee_angle_r": np.full_like(TIME, -3.0), "Head_Motion": np.full_like(TIME, 1.0)}
-    scenario = load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", columns))})
+    scenario = load_scenario("thesis", following(write_mot(tmp_path / "t.mot", columns)))
     with caplog.at_level(logging.WARNING):
-        motion = make_recorded_motion(scenario)
+        motion = scenario.controller.motion(scenario.subject, scenario.terrain)
     (record,) = caplog.records
     said = record.getMessage()
     knee = joints.names.index("RightLegTibiaMotion")
@@ -246,5 +255,5 @@ def test_command_tells_it_in_one_line_of_its_own(tmp_path, monkeypatch, capfd):
 
 def test_angles_within_their_ranges_are_not_spoken_of(tmp_path, caplog):
     with caplog.at_level(logging.WARNING):
-        make_recorded_motion(load_scenario("thesis", {"follow.file": str(write_mot(tmp_path / "t.mot", bend()))}))
+        motion_of(load_scenario("thesis", following(write_mot(tmp_path / "t.mot", bend()))))
     assert caplog.records == []

@@ -11,10 +11,9 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
-from humanwalk.choices.world import add_human_plant
-from humanwalk.measures.signals import signal_columns
+from humanwalk.choices.contact import CONTACTS
+from humanwalk.diagrams.world import add_world
 from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario, SimulationParameters
 from humanwalk.systems.foot_force_observer import FootForceObserver
@@ -27,10 +26,9 @@ SCENARIO = Scenario(simulation=SimulationParameters(time_step=0.002))
 def standing(contact, lift=0.0, duration=1.0):
     """Feet (2, 8) of the stiff human after some time on level ground, the plant's weight and the pelvis' motion."""
     builder = DiagramBuilder()
-    human = add_human_plant(builder, dataclasses.replace(SCENARIO, contact=contact))
+    human = add_world(builder, dataclasses.replace(SCENARIO, contact=CONTACTS[contact]()))
     plant = human.plant
-    observer = builder.AddSystem(FootForceObserver(plant, human.scene_graph.model_inspector(), Plane()))
-    builder.Connect(plant.get_contact_results_output_port(), observer.GetInputPort("contact_results"))
+    observer = builder.GetSubsystemByName("foot_contact")
     desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
     builder.Connect(desired.get_output_port(), plant.get_desired_state_input_port(human.instance))
     simulator = Simulator(builder.Build())
@@ -52,7 +50,7 @@ def stood(request):
 
 def test_ports(plant):
     builder = DiagramBuilder()
-    human = add_human_plant(builder, SCENARIO)
+    human = add_world(builder, SCENARIO)
     observer = FootForceObserver(human.plant, human.scene_graph.model_inspector(), Plane())
     assert observer.num_input_ports() == 1
     assert observer.GetInputPort("contact_results").get_name() == "contact_results"
@@ -106,10 +104,9 @@ def test_in_the_air_everything_is_zero(contact):
     np.testing.assert_array_equal(feet, 0.0)
 
 
-def test_its_signals_are_recorded_under_the_names_of_the_feet(plant):
-    builder = DiagramBuilder()
-    human = add_human_plant(builder, SCENARIO)
-    forces, friction_use = FootForceObserver(human.plant, human.scene_graph.model_inspector(), Plane()).signals
-    columns = signal_columns(JointMap.of(plant))
-    assert list(forces.columns) == columns["foot_forces"]
-    assert list(friction_use.columns) == columns["friction_use"]
+def test_its_signals_are_recorded_under_the_names_of_the_feet():
+    world = add_world(DiagramBuilder(), SCENARIO)
+    forces, friction_use = FootForceObserver(world.plant, world.scene_graph.model_inspector(), Plane()).signals
+    assert forces.columns[:3] == tuple(f"right_foot.force_{axis}_N" for axis in "xyz")
+    assert forces.columns[8:11] == tuple(f"left_foot.force_{axis}_N" for axis in "xyz")
+    assert friction_use.columns == ("right_foot.friction_use", "left_foot.friction_use")

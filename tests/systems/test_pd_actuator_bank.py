@@ -13,7 +13,8 @@ from pydrake.systems.primitives import ConstantVectorSource
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.hermite import hermite
-from humanwalk.control.pd_control import ActuatorParameters, joint_gains, pd_torque
+from humanwalk.control.joint_gains import JointGains, joint_gains
+from humanwalk.control.pd_control import pd_torque
 from humanwalk.control.pd_laws import install_gains
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
@@ -23,9 +24,8 @@ seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
 
 @pytest.fixture(scope="module")
-def gains(plant, joints):
-    inertia = plant.CalcMassMatrix(plant.CreateDefaultContext()).diagonal()[joints.v]
-    return joint_gains(joints.names, inertia, ActuatorParameters())
+def gains(plant):
+    return joint_gains(plant, JointGains())
 
 
 def floating_human(time_step, gains, limited=True, law="implicit"):
@@ -337,7 +337,7 @@ def named_step(kp, kd):
     with pytest.raises(ParameterError, match=r"explicit is unstable at time_step 0\.01 s") as refusal:
         PdActuatorBank(plant, kp, kd, law="explicit")
     message = str(refusal.value)
-    assert message.startswith("actuators.law: ")
+    assert message.startswith("actuation.pd.law: ")
     assert "\n" not in message
     assert "use law: implicit" in message
     return float(message.split("steps up to ")[1].split(" s")[0])

@@ -8,7 +8,8 @@ import pytest
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Adder, Gain
 
-from humanwalk.diagrams.choose import make_diagram
+from humanwalk.choices import BalancedController, ThesisController
+from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, shipped_scenarios
 from humanwalk.view.diagram_picture import draw_diagram, find_graphviz, with_own_numbers, with_wired_ports
@@ -45,8 +46,11 @@ def test_the_walker_of_every_scenario_is_drawn_with_its_systems_by_name(name, tm
     scenario = load_scenario(name)
     draw_diagram(make_diagram(scenario), path)
     text = words(path)
-    own = {"thesis": ("gait", "inverse_kinematics"), "balanced": ("planner", "controller")}[scenario.controller]
-    for system in (*own, "actuators", "plant", "scene_graph", "foot_force_observer"):
+    own = {
+        ThesisController: ("gait", "inverse_kinematics"),
+        BalancedController: ("planner", "controller"),
+    }[type(scenario.controller)]
+    for system in (*own, "actuators", "plant", "scene_graph", "foot_contact"):
         assert f"name={system}" in text
 
 

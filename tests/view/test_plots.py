@@ -9,7 +9,7 @@ import pytest
 from PIL import Image, ImageFilter
 
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, people
-from humanwalk.measures.signals import TIME, signal_columns
+from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
@@ -30,10 +30,9 @@ THESIS_NAMES = {name for name in PLOTS if name.startswith("figure_5_")}
 UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]", "[W/kg]")
 
 
-def made_up_signals(joints, duration: float) -> pa.Table:
+def made_up_signals(columns, duration: float) -> pa.Table:
     """A walk of sines: every column different, each foot on the ground for 60 % of its stride."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
-    columns = [name for names in signal_columns(joints).values() for name in names]
     data = {name: np.sin(2 * np.pi * time / STRIDE + place) for place, name in enumerate(columns)}
     data["com.x_m"], data["com.y_m"] = 1.4 * time, 0.01 * np.sin(time)
     for side, lag, y in (("right", 0.0, -0.1), ("left", 0.5, 0.1)):
@@ -46,12 +45,15 @@ def made_up_signals(joints, duration: float) -> pa.Table:
 
 
 @pytest.fixture
-def make_run(tmp_path, joints):
+def make_run(tmp_path, columns):
     """Writes the run of made-up signals, by its duration [s], whether it is supported, and a change of its signals."""
 
     def make(duration: float = 6.0, supported: bool = True, change=lambda signals: signals):
-        overrides = {"balance.support.enabled": str(supported).lower(), "recording.signal_period": str(PERIOD)}
-        signals = change(made_up_signals(joints, duration))
+        overrides = {
+            "controller.thesis.balance.support.enabled": str(supported).lower(),
+            "recording.signal_period": str(PERIOD),
+        }
+        signals = change(made_up_signals(columns, duration))
         if not supported:
             signals = signals.drop_columns([name for name in signals.column_names if name.startswith("support.")])
         outcome = Outcome(load_scenario("thesis", overrides), signals, "completed", wall_time=1.0)

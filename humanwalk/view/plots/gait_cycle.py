@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.events import events_of
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, over_strides, people
-from humanwalk.measures.summary import steady_from
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
@@ -79,7 +78,9 @@ def _three(title: str) -> Figure:
 
 def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
     """Draw a signal over the strides of a leg in steady walking; False if there was none."""
-    strides = over_strides(events_of(run.signals, side, steady_from(run.scenario)), values)
+    strides = over_strides(
+        events_of(run.signals, side, run.scenario.controller.steady_from(run.scenario.subject)), values
+    )
     if not len(strides):
         return False
     mean, sd = strides.mean(axis=0), strides.std(axis=0)

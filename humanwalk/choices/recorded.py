@@ -1,0 +1,93 @@
+"""The controller that follows recorded joint angles, with the pelvis supported, or without physics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import OutputPort
+
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.choices.controller import Command
+from humanwalk.choices.start import StartPosture
+from humanwalk.choices.support import add_support
+from humanwalk.choices.world import World
+from humanwalk.control.balance_support import BalanceSupportParameters
+from humanwalk.control.joint_gains import JointGains, joint_gains
+from humanwalk.motion.followed import followed_motion
+from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion
+from humanwalk.numerics import Array
+from humanwalk.parameter_file import load_as
+from humanwalk.quantity import ParameterError, file_path, quantity
+from humanwalk.systems.recorded_posture_source import RecordedPostureSource
+from humanwalk.terrain import Terrain
+
+
+@dataclass(frozen=True)
+class RecordedController:
+    """A recording followed joint by joint."""
+
+    angles: str = file_path()
+    """A .mot, .sto or .csv file with joint angles; its path counts from the scenario's folder."""
+
+    mapping: str = file_path()
+    """A YAML file (`MotionMapping`) that assigns columns to joints and gives their unit; empty: by name."""
+
+    kinematic: bool = False
+    """Show the recording without physics: no forces, no torques, no balance."""
+
+    ease_in: float = quantity(0.3, "s", 0.0, 5.0)
+    """Time in which the recording gets up to speed, since the body starts at rest."""
+
+    support: BalanceSupportParameters = BalanceSupportParameters()
+    """The assumed balance: a spring-damper on the pelvis."""
+
+    gains: JointGains = JointGains()
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError without a recording."""
+        if not self.angles:
+            raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it (--follow FILE)")
+
+    commanded_speed = None
+
+    @property
+    def physics(self) -> bool:
+        """See `Controller`."""
+        return not self.kinematic
+
+    def steady_from(self, subject: Subject) -> float:
+        """When the recording runs at full speed [s]."""
+        return self.ease_in
+
+    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
+        """See `Controller`."""
+        return joint_gains(model, self.gains)
+
+    def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
+        """The first sample of the recording."""
+        motion = self.motion(subject, terrain)
+        names = JointMap.of(kinematics_plant(subject)).names
+        return StartPosture(dict(zip(names, motion.joints(0.0)[0].tolist(), strict=True)), motion.pelvis(0.0).X_WP)
+
+    def add_to(self, world: World) -> Command:
+        """Add recording and support.
+
+        Raises:
+            ParameterError: the recording or its mapping cannot be used.
+        """
+        pelvis_reference, desired_state = self.add_reference(world)
+        add_support(world, self.support, pelvis_reference)
+        return Command(desired_state)
+
+    def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
+        """See `Controller`."""
+        source = world.add("recording", RecordedPostureSource(self.motion(world.subject, world.terrain)))
+        return source.GetOutputPort("pelvis_reference"), source.GetOutputPort("desired_state")
+
+    def motion(self, subject: Subject, terrain: Terrain) -> RecordedMotion:
+        """The recording as motion of a subject on a terrain."""
+        mapping = load_as(MotionMapping, Path(self.mapping)) if self.mapping else MotionMapping()
+        return followed_motion(Path(self.angles), mapping, subject, terrain, self.ease_in)
