@@ -1,6 +1,6 @@
 """LeafSystem: the desired posture of everything but the legs, with arms that swing against the legs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
@@ -10,44 +10,24 @@ from humanwalk.gait.walking_gait import WalkingGait
 
 
 class ArmSwingSource(LeafSystem):
-    """Desired angles of all joints while walking, before the legs are solved for; a function of time.
+    """Desired angles of all joints while walking, before the legs are solved for; no input.
 
     Outputs:
-        posture: (2n) desired angles [rad], then rates [rad/s], in actuator order: swinging arms, every other joint at
-            the start posture.
+        posture: (2n) desired angles [rad], then rates [rad/s], in actuator order, at `preview` from now: the arms swing
+            about their middle, every other joint is at zero.
     """
 
     def __init__(
-        self,
-        joint_names: Sequence[str],
-        gait: WalkingGait,
-        parameters: ArmSwingParameters,
-        start_posture: Mapping[str, float] | None = None,
-        preview: float = 0.0,
+        self, joint_names: Sequence[str], gait: WalkingGait, parameters: ArmSwingParameters, preview: float = 0.0
     ) -> None:
-        """Make the source for n joints in actuator order, in step with a gait.
-
-        Args:
-            joint_names: the n joints.
-            gait: whose phases the arms follow.
-            parameters: size of the swing.
-            start_posture: angles [rad] by joint name that are held throughout (arms: the middle of their swing).
-            preview: how far ahead of the present the posture is [s].
-        """
+        """Make the source for joints in actuator order; the arms follow the phases of a gait, `preview` [s] ahead."""
         super().__init__()
-        self._gait = gait
-        self._preview = preview
-        n, place = len(joint_names), {name: i for i, name in enumerate(joint_names)}
-        # The posture is a sum of three, weighted by 1, swing and its rate.
-        self._parts = np.zeros((3, 2 * n))
-        for name, angle in (start_posture or {}).items():
-            self._parts[0, place[name]] = angle
+        self._gait, self._preview = gait, preview
+        self._middle, self._amplitude = np.zeros((2, len(joint_names)))
         for name, joint in arm_joints(parameters).items():
-            self._parts[0, place[name]] += joint.middle
-            self._parts[1, place[name]] = self._parts[2, n + place[name]] = joint.amplitude
-        self._posture = self.DeclareVectorOutputPort(
-            "posture", 2 * n, self._calc_posture, prerequisites_of_calc={self.time_ticket()}
-        )
+            place = joint_names.index(name)
+            self._middle[place], self._amplitude[place] = joint.middle, joint.amplitude
+        self.DeclareVectorOutputPort("posture", 2 * len(joint_names), self._calc_posture)
 
     def _calc_posture(self, context: Context, output: BasicVector) -> None:
         t = context.get_time() + self._preview
@@ -56,4 +36,4 @@ class ArmSwingSource(LeafSystem):
         swing, rate = arm_swing(
             gait.phase("Right", t), speed / gait.parameters.walked_stride, speed / full, ramp.acceleration(t) / full
         )
-        output.SetFromVector(np.array((1.0, swing, rate)).dot(self._parts))
+        output.SetFromVector(np.concatenate((self._middle + swing * self._amplitude, rate * self._amplitude)))

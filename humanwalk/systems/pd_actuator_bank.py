@@ -154,4 +154,5 @@ class PdActuatorBank(LeafSystem):
         output.SetFromVector(self._net_actuation.Eval(context) - self._damping_in_plant(self._state.Eval(context)))
 
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(np.abs(self._law(context, self._state.Eval(context))) >= self._effort_limits)
+        tau = self._law(context, self._state.Eval(context))
+        output.SetFromVector((np.abs(tau) >= self._effort_limits).astype(float))

@@ -96,7 +96,7 @@ def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
 
 
 def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
-    """A block of the body's mass as the pelvis, its centre of mass off its origin, so that it turns as well."""
+    """A block of the body's mass as the pelvis, its center of mass off its origin, so that it turns as well."""
     mass, arm = 70.0, 0.02
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, 0.001)
@@ -119,3 +119,12 @@ def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
     # The weight acts in front of the origin: nose down, positive about y.
     pitch = weight * arm / PARAMETERS.rotational_stiffness
     np.testing.assert_allclose(X_WP.rotation().matrix(), RotationMatrix.MakeYRotation(pitch).matrix(), atol=1e-6)
+
+
+def test_the_wrench_is_its_signal(support):
+    (signal,) = support.signals
+    assert (signal.name, signal.port.get_name()) == ("support_wrench", "wrench")
+    assert signal.columns == (
+        *(f"support.torque_{axis}_N_m" for axis in "xyz"),
+        *(f"support.force_{axis}_N" for axis in "xyz"),
+    )

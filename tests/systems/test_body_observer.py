@@ -1,4 +1,4 @@
-"""Body observer: the soles and the centre of mass of the state that is fed in."""
+"""Body observer: the soles and the center of mass of a plant state."""
 
 import numpy as np
 import pytest
@@ -80,3 +80,9 @@ def test_a_body_that_is_carried_elsewhere_carries_its_points(observed, plant, rn
     soles_there, com_there = observed(np.concatenate((moved, v)))
     np.testing.assert_allclose(soles_there, soles + np.tile(shift, 2), atol=1e-9)
     np.testing.assert_allclose(com_there, com + np.concatenate((shift, np.zeros(3))), atol=1e-9)
+
+
+def test_each_port_has_a_signal_with_a_column_per_element(observer):
+    assert [signal.name for signal in observer.signals] == ["soles", "com"]
+    assert all(len(signal.columns) == signal.port.size() for signal in observer.signals)
+    assert observer.signals[0].columns[3] == "left_sole.x_m"

@@ -140,3 +140,8 @@ def test_the_pelvis_sinks_by_the_offset_until_the_first_touchdown(at, gait, skel
     assert -1e-12 <= height <= gait.parameters.offset + 1e-12
     if t >= gait.start_time:
         assert height == pytest.approx(gait.parameters.offset, abs=1e-12)
+
+
+def test_every_port_but_the_soles_has_a_signal_with_a_column_per_element(source):
+    assert [signal.name for signal in source.signals] == ["phase", "contact_schedule", "pelvis_reference"]
+    assert all(len(signal.columns) == signal.port.size() for signal in source.signals)

@@ -113,6 +113,14 @@ def test_the_implicit_law_does_not_feed_the_state_through(implicit, explicit):
     assert feeds_through(explicit)
 
 
+def test_signals_have_a_column_per_element(implicit):
+    assert [signal.name for signal in implicit.signals] == ["desired_state", "torque", "saturated"]
+    assert all(len(signal.columns) == signal.port.size() for signal in implicit.signals)
+    assert implicit.signals[0].columns[N] == implicit.signals[1].columns[0].replace(
+        "torque_N_m", "desired_velocity_rad_s"
+    )
+
+
 # ---- the law
 
 

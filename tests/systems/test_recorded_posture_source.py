@@ -97,3 +97,9 @@ def test_two_samples_are_enough():
     recorded = RecordedMotion(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]), np.zeros((2, 3)), np.zeros((2, 3)), 0.0)
     angle, rate = recorded.joints(0.25)
     assert (angle[0], rate[0]) == pytest.approx((0.25, 1.0))
+
+
+def test_the_pelvis_is_recorded():
+    (signal,) = RecordedPostureSource(motion()).signals
+    assert signal.name == "pelvis_reference"
+    assert len(signal.columns) == signal.port.size()
