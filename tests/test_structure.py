@@ -32,7 +32,7 @@ LABELS = {("view/plots/gait_cycle.py", "Pelvis")}
 PENDING: dict[str, dict[str, str]] = {
     "name": {
         "founder": "choices/balanced.py choices/start.py",
-        "h3": "gait/arm_swing.py systems/inverse_kinematics_solver.py",
+        "h3": "gait/arm_swing.py",
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py",
     },

@@ -1,99 +1,87 @@
 """Inverse kinematics of one leg by Newton's method with least squares (thesis section 4.1).
 
-The thesis solves J^T J dtheta = -J^T G for the residual G between the pose of the sole and its
-desired pose. As printed that system is singular: a leg has seven joints for six rows, and rank five
-with a straight knee (erratum E13). Here the step is taken by the Moore-Penrose inverse through an SVD,
-damped in proportion to the residual, kept inside the joint ranges, and accepted only if it makes the
-residual smaller; so a target out of reach gives the nearest pose, and says so.
+The thesis solves J^T J dtheta = -J^T G for the residual G between the pose of the sole and its desired pose. As printed
+that system is singular: a leg has seven joints for six rows, and rank five with a straight knee (erratum E13). Here the
+step is taken by the Moore-Penrose inverse through an SVD, damped in proportion to the residual, kept inside the joint
+ranges, and accepted only if it reduces the residual. A target out of reach gives the nearest pose, marked as not
+converged.
 """
 
-import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from operator import mul
 from typing import Literal, NamedTuple
 
 import numpy as np
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from scipy.linalg.lapack import dgesdd, dgesv
+from pydrake.multibody.tree import JacobianWrtVariable
 
-from humanwalk.control.revolute_chain import ChainState, Pose, RevoluteChain, rotation_vector
-from humanwalk.numerics import Array, Indices
+from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import quantity
 
-Vector6 = tuple[float, ...]
-Angles = tuple[float, ...]
-"""Joint angles [rad]: arrays as short as these take longer than plain numbers wherever no matrix is at hand."""
+JacobianKind = Literal["analytic", "numeric"]
 
 STEP_FRACTIONS = (1.0, 0.5, 0.25, 0.1, 0.03, 0.003)
-"""Shares of a Newton step that are tried until one lessens the residual."""
+"""Fractions of a Newton step, tried in this order until one reduces the residual."""
 
 STATIONARY_GAIN = 1e-6
-"""Relative gain of a step below which the nearest pose counts as found."""
+"""Relative reduction of the residual by a step below which the pose counts as the nearest."""
 
 RANK_FLOOR = 1e-9
-"""Singular value of the weighted J [m/rad] up to which a motion of the joints leaves the sole alone."""
-
-WELL_CONDITIONED = 0.01
-"""Singular value of the weighted J [m/rad] above which J J' is inverted, which is quicker than an SVD; nearly straight
-legs need the SVD."""
+"""Singular value of the weighted J [m/rad] up to which a motion of the joints does not move the sole."""
 
 RESTART_GAIN = 0.5
-"""Share of the residual below which the pose found by a second start replaces the first: less would not be worth
-a jump of the joints."""
+"""Fraction of the first residual below which the pose of the second start is taken: a smaller improvement does not
+justify a jump of the joints."""
+
+DIFFERENCE_STEP = 1e-6
+"""Half width of the central differences of the numeric Jacobian [rad]."""
 
 
 @dataclass(frozen=True)
 class InverseKinematicsParameters:
-    """How the Newton iteration is run."""
+    """Settings of the Newton iteration."""
 
-    jacobian: Literal["analytic", "numeric"] = "analytic"
+    jacobian: JacobianKind = "analytic"
     """Drake's Jacobian, or central differences as in the thesis (section 1.4)."""
 
     tolerance: float = quantity(1e-6, "m, rad", 1e-10, 1e-2)
     """Norm of the residual at which a pose counts as reached (the thesis asks for exactly 0)."""
 
     max_iterations: int = quantity(50, "", 1, 1000)
-    """Newton steps, accepted or not, before giving up."""
+    """Maximum number of Newton steps."""
 
     orientation_weight: float = quantity(0.03, "m/rad", 1e-3, 10.0)
-    """Length that one radian of wrong orientation counts as, where a target cannot be reached: less than the
-    height of an ankle, which keeps the sole's position and lets its pitch give way."""
+    """Length equivalent to one radian of orientation error if a target is out of reach. It is less than the height of
+    the ankle, so that the sole keeps its position and gives way in pitch."""
 
     damping: float = quantity(0.5, "1/rad", 0.0, 10.0)
-    """Damping of a step per weighted residual (after Sugihara 2011): short steps far from the target and past
-    singular postures, pure Newton steps near the target."""
+    """Damping of a step per weighted residual (after Sugihara 2011): short steps far from the target and near singular
+    postures, pure Newton steps near the target."""
 
     singular_value_floor: float = quantity(0.01, "m/rad", 0.0, 1.0)
-    """Smaller singular values of the weighted J do not raise joint velocities any more."""
+    """Singular value of the weighted J below which joint velocities do not grow further."""
 
     neutral_pull: float = quantity(0.1, "", 0.0, 1.0)
-    """Share of each angle that the first step takes back where that leaves the sole alone: seven joints for six
-    rows have one motion to spare, which would drift away from cycle to cycle."""
+    """Fraction of each angle that the first step takes back in the null space of J: seven joints for six rows have one
+    redundant motion, which would drift from cycle to cycle."""
 
     max_step: float = quantity(0.5, "rad", 1e-3, 3.2)
-    """Longest change of any joint in one step: keeps the linearisation meaningful."""
+    """Maximum change of any joint in one step; keeps the linearization valid."""
 
-    @cached_property
+    @property
     def row_weights(self) -> Array:
         """Weights of the six rows of the residual [rotation; position]."""
         return np.repeat((self.orientation_weight, 1.0), 3)
 
-    @cached_property
-    def row_weights_column(self) -> Array:
-        """The same, shape (6, 1)."""
-        return self.row_weights[:, None]
-
 
 class InverseKinematicsSolution(NamedTuple):
-    """What the iteration ended with.
+    """Result of the iteration.
 
     Attributes:
         theta: joint angles [rad], shape (n,), inside the joint ranges.
         residual: norm of [rotation vector [rad]; position error [m]] at `theta`.
-        iterations: Newton steps tried.
+        iterations: number of Newton steps.
         converged: whether `residual` is within the tolerance; if not, `theta` is the nearest pose found.
     """
 
@@ -104,215 +92,147 @@ class InverseKinematicsSolution(NamedTuple):
 
 
 class LegKinematics:
-    """The chain from a base frame to a tip frame through revolute joints of a plant.
+    """The chain of joints between a base frame P and a tip frame S of a plant.
 
-    Args:
-        plant: a finalised plant, see `RevoluteChain.of`; joints that are not in `joint_names` stay at zero.
-        base_frame: name of the frame P in which poses are measured.
-        tip_frame: name of the frame S whose pose is wanted.
-        joint_names: the chain's joints in the order of theta.
+    Attributes:
+        joint_names: the n joints of the chain, in the order of theta.
+        lower, upper: joint ranges [rad], shape (n,).
     """
 
     def __init__(self, plant: MultibodyPlant, base_frame: str, tip_frame: str, joint_names: Sequence[str]) -> None:
-        self._chain = RevoluteChain.of(plant, base_frame, tip_frame, joint_names)
+        """Make the chain.
+
+        Args:
+            plant: a finalized plant; joints that are not in `joint_names` stay at their default angles.
+            base_frame: name of the frame P in which poses are measured.
+            tip_frame: name of the frame S that is to be placed.
+            joint_names: revolute joints between P and S, in the order of theta.
+        """
+        self._plant = plant
+        self._context = plant.CreateDefaultContext()
+        self._positions = plant.GetPositions(self._context)
+        self._P, self._S = plant.GetFrameByName(base_frame), plant.GetFrameByName(tip_frame)
         joints = [plant.GetJointByName(name) for name in joint_names]
+        self._q = np.array([joint.position_start() for joint in joints])
+        self._v = np.array([joint.velocity_start() for joint in joints])
         self.joint_names = tuple(joint_names)
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
-        self._ranges = tuple(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
-        # A pose is followed by its Jacobian.
-        self._at = lru_cache(maxsize=1)(self._chain.at)
-
-    def state(self, theta: Array | Angles) -> ChainState:
-        """Where the chain is at n joint angles theta [rad]."""
-        return self._at(theta if isinstance(theta, tuple) else tuple(theta.tolist()))
-
-    def within_range(self, theta: Iterable[float]) -> Angles:
-        """The nearest joint angles inside the joint ranges."""
-        return tuple([min(max(angle, low), high) for angle, (low, high) in zip(theta, self._ranges, strict=True)])
-
-    def off_ends(self, theta: Iterable[float]) -> bool:
-        """Whether no joint is at an end of its range."""
-        return all([low < angle < high for angle, (low, high) in zip(theta, self._ranges, strict=True)])
 
     def X_PS(self, theta: Array) -> RigidTransform:
         """Pose of the tip S in the base P at joint angles theta [rad], shape (n,)."""
-        x, y, z, p = self.state(theta).X_PS
-        return RigidTransform(RotationMatrix(np.array((x, y, z)).T), np.array(p))
+        self._set_angles(theta)
+        return self._S.CalcPose(self._context, self._P)
 
-    def Jv_V_PS(self, theta: Array) -> Array:
-        """Jacobian of the spatial velocity (rotation first) of S in P, expressed in P; (6, n)."""
-        return self.state(theta).jacobian()
+    def jacobian(self, theta: Array, kind: JacobianKind = "analytic") -> Array:
+        """Jacobian of the spatial velocity [angular; translational] of S in P, expressed in P; shape (6, n)."""
+        return self._analytic_jacobian(theta) if kind == "analytic" else self._numeric_jacobian(theta)
 
-    def Jv_V_PS_numeric(self, theta: Array, step: float = 1e-6) -> Array:
-        """The same Jacobian by central differences, as the thesis calculates it (section 1.4)."""
-        J = np.empty((6, theta.size))
-        for i in range(theta.size):
-            ahead, behind = theta.copy(), theta.copy()
-            ahead[i] += step
-            behind[i] -= step
-            J[:, i] = pose_error(self.X_PS(ahead), self.X_PS(behind)) / (2 * step)
-        return J
+    def _analytic_jacobian(self, theta: Array) -> Array:
+        self._set_angles(theta)
+        J: Array = self._plant.CalcJacobianSpatialVelocity(
+            self._context, JacobianWrtVariable.kV, self._S, np.zeros(3), self._P, self._P
+        )
+        return J[:, self._v]
 
-    def jacobian(self, theta: Array | Angles, kind: Literal["analytic", "numeric"]) -> Array:
-        """The Jacobian of the named kind, shape (6, n)."""
-        return self.state(theta).jacobian() if kind == "analytic" else self.Jv_V_PS_numeric(np.array(theta))
+    def _numeric_jacobian(self, theta: Array) -> Array:
+        """Central differences, as in the thesis (section 1.4)."""
+        steps = DIFFERENCE_STEP * np.eye(theta.size)
+        differences = [pose_error(self.X_PS(theta + step), self.X_PS(theta - step)) for step in steps]
+        return np.column_stack(differences) / (2 * DIFFERENCE_STEP)
+
+    def _set_angles(self, theta: Array) -> None:
+        # Drake keeps the kinematics of the present positions: a pose is followed by its Jacobian.
+        if not np.array_equal(self._positions[self._q], theta):
+            self._positions[self._q] = theta
+            self._plant.SetPositions(self._context, self._positions)
 
 
 def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
-    """[rotation vector; translation] that leads from X_desired to X, in their common frame; (6,).
+    """[rotation vector; translation] from X_desired to X, in their common frame; shape (6,).
 
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
-    return np.array(_pose_error(_axes_and_origin(X), _axes_and_origin(X_desired)))
-
-
-def _axes_and_origin(X: RigidTransform) -> Pose:
-    # One number after the other crosses from C++ into Python at a price; the matrix crosses whole.
-    x, y, z, p = X.GetAsMatrix34().T.tolist()
-    return x, y, z, p
-
-
-def _pose_error(X: Pose, X_desired: Pose) -> Vector6:
-    (a, b, c), (d, e, f) = X[3], X_desired[3]
-    return *rotation_vector(X_desired[:3], X[:3]), a - d, b - e, c - f
+    rotation = X.rotation().multiply(X_desired.rotation().inverse()).ToAngleAxis()
+    return np.concatenate((rotation.angle() * rotation.axis(), X.translation() - X_desired.translation()))
 
 
 def solve_inverse_kinematics(
     leg: LegKinematics,
-    X_PS_desired: RigidTransform | Pose,
+    X_PS_desired: RigidTransform,
     theta_guess: Array,
     parameters: InverseKinematicsParameters | None = None,
 ) -> InverseKinematicsSolution:
-    """Joint angles that bring the leg's sole to a desired pose (thesis Eq 4-3 to 4-5).
+    """Joint angles that bring the sole to a desired pose (thesis Eq 4-3 to 4-5).
+
+    Joints at the end of their range and a straight leg can stall the iteration short of a pose within reach.
+    An iteration that stalls is therefore repeated with those joints in the middle of their ranges.
 
     Args:
         leg: the kinematic chain, n joints.
         X_PS_desired: desired pose of the sole S in the pelvis P.
-        theta_guess: warm start [rad], shape (n,); brought into the joint ranges first.
-        parameters: the iteration's settings.
-
-    Returns:
-        The pose found. Joints at the end of their range and a straight leg can stall the iteration short of a pose
-        that is within reach, so one that stalls is tried once more with those joints in the middle of their ranges.
+        theta_guess: warm start [rad], shape (n,); clipped to the joint ranges.
+        parameters: settings of the iteration.
     """
     parameters = parameters or InverseKinematicsParameters()
-    desired = _axes_and_origin(X_PS_desired) if isinstance(X_PS_desired, RigidTransform) else X_PS_desired
-    first, first_cost = _iterate(leg, desired, theta_guess, parameters)
+    first, first_cost = _iterate(leg, X_PS_desired, theta_guess, parameters)
     if first.converged:
         return first
     at_end = (first.theta <= leg.lower) | (first.theta >= leg.upper)
     restart = np.where(at_end, 0.5 * (leg.lower + leg.upper), first.theta)
-    second, second_cost = _iterate(leg, desired, restart, parameters)
-    better = second.converged or second_cost < RESTART_GAIN * first_cost
-    return (second if better else first)._replace(iterations=first.iterations + second.iterations)
+    second, second_cost = _iterate(leg, X_PS_desired, restart, parameters)
+    is_better = second.converged or second_cost < RESTART_GAIN * first_cost
+    return (second if is_better else first)._replace(iterations=first.iterations + second.iterations)
 
 
 def _iterate(
-    leg: LegKinematics,
-    desired: Pose,
-    theta_guess: Array,
-    parameters: InverseKinematicsParameters,
+    leg: LegKinematics, X_PS_desired: RigidTransform, theta_guess: Array, parameters: InverseKinematicsParameters
 ) -> tuple[InverseKinematicsSolution, float]:
-    """Newton steps until nothing improves; the solution and the norm of its weighted residual."""
-    weights = parameters.row_weights.tolist()
+    """Newton steps until none reduces the residual; the solution and the norm of its weighted residual."""
+    weights = parameters.row_weights
 
-    def at(theta: Angles) -> tuple[Vector6, Vector6, float]:
-        """Residual, weighted residual and its norm."""
-        error = _pose_error(leg.state(theta).X_PS, desired)
-        weighted = tuple(map(mul, weights, error))
-        return error, weighted, math.hypot(*weighted)
+    def residual(theta: Array) -> tuple[Array, float]:
+        """The residual G and its weighted norm."""
+        G = pose_error(leg.X_PS(theta), X_PS_desired)
+        return G, float(np.linalg.norm(weights * G))
 
-    theta = leg.within_range(theta_guess.tolist())
-    error, weighted, cost = at(theta)
+    theta = np.clip(theta_guess, leg.lower, leg.upper)
+    G, cost = residual(theta)
     iterations, pull = 0, parameters.neutral_pull
-    while math.hypot(*error) > parameters.tolerance and iterations < parameters.max_iterations:
+    while np.linalg.norm(G) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
-        J = leg.jacobian(theta, parameters.jacobian) * parameters.row_weights_column
-        step = _newton_step(leg, theta, J, np.array(weighted), parameters.damping * cost, pull).tolist()
-        longest = max(map(abs, step))
-        shorter = parameters.max_step / longest if longest > parameters.max_step else 1.0
-        # Shorten the step until it helps: far targets and joints at the end of their range bend the residual.
+        J = weights[:, None] * leg.jacobian(theta, parameters.jacobian)
+        step = _newton_step(leg, theta, J, weights * G, parameters.damping * cost, pull)
+        step *= min(1.0, parameters.max_step / max(np.abs(step).max(), parameters.max_step))
+        # Far from the target and at the ends of the joint ranges a full step can increase the residual.
         for fraction in STEP_FRACTIONS:
-            trial = leg.within_range(
-                [angle + fraction * (shorter * way) for angle, way in zip(theta, step, strict=True)]
-            )
-            trial_error, trial_weighted, trial_cost = at(trial)
+            trial = np.clip(theta + fraction * step, leg.lower, leg.upper)
+            trial_G, trial_cost = residual(trial)
             if trial_cost < cost:
                 break
         gain = cost - trial_cost
+        # A step with the neutral pull does not show what a pure Newton step would gain.
+        is_stationary = gain < STATIONARY_GAIN * cost and not pull
         if gain > 0:
-            theta, error, weighted, cost = trial, trial_error, trial_weighted, trial_cost
-        # A step with the pull in it says nothing about what a pure Newton step would gain.
-        if gain < STATIONARY_GAIN * cost and not pull:
+            theta, G, cost = trial, trial_G, trial_cost
+        if is_stationary:
             break
         pull = 0.0
-    residual = math.hypot(*error)
-    return InverseKinematicsSolution(np.array(theta), residual, iterations, residual <= parameters.tolerance), cost
+    norm = float(np.linalg.norm(G))
+    return InverseKinematicsSolution(theta, norm, iterations, norm <= parameters.tolerance), cost
 
 
-def _newton_step(leg: LegKinematics, theta: Angles, J: Array, error: Array, damping: float, pull: float) -> Array:
-    """Step -J+ error - (1 - J+ J) pull theta of the joints that are free to move, J+ damped; shape (n,)."""
+def _newton_step(leg: LegKinematics, theta: Array, J: Array, G: Array, damping: float, pull: float) -> Array:
+    """Step -J+ G - (1 - J+ J) pull theta of the joints that can move, with J+ damped in the first term; shape (n,)."""
 
-    def step_of(free: Indices | slice) -> Array:
-        Jf = J[:, free]
-        square = Jf.dot(Jf.T)
-        damped = square + damping * damping * _IDENTITY
-        inverse = _inverse(square if pull else damped, WELL_CONDITIONED)
-        step: Array
-        if inverse is not None and not pull:
-            step = -inverse.dot(error).dot(Jf)
-            return step
-        if inverse is not None:
-            # What is damped is no nearer to singular.
-            *_, wanted, _ = dgesv(damped, error)
-            back = pull * np.array(theta)[free]
-            step = (inverse.dot(Jf.dot(back)) - wanted).dot(Jf) - back
-            return step
-        U, s, Vt, _ = dgesdd(Jf)
-        # The tiny constant keeps a posture that is exactly singular from dividing by zero.
-        along = (Vt[: s.size].T * (s / (s * s + damping * damping + 1e-30))) @ U.T[: s.size]
-        spare = Vt[np.count_nonzero(s > RANK_FLOOR) :]
-        step = -along @ error - pull * spare.T @ (spare @ np.array(theta)[free])
+    def step_of(free: Mask) -> Array:
+        U, s, Vt = np.linalg.svd(J[:, free])
+        rank = np.count_nonzero(s > RANK_FLOOR)
+        U, s, V, null = U[:, :rank], s[:rank], Vt[:rank].T, Vt[rank:].T
+        step: Array = -V @ (s / (s**2 + damping**2) * (U.T @ G)) - null @ (null.T @ (pull * theta[free]))
         return step
 
-    return _of_free_joints(leg, theta, step_of)
-
-
-def _inverse(square: Array, least: float) -> Array | None:
-    """The inverse of J J', or None where J may have a singular value of `least` or below."""
-    *_, inverse, singular = dgesv(square, _IDENTITY)
-    if singular:
-        return None
-    # The inverse's Frobenius norm is no less than the inverse square of the least singular value.
-    entries = inverse.ravel(order="K")
-    return inverse if entries.dot(entries) < least**-4 else None
-
-
-_IDENTITY = np.eye(6)
-
-
-def _of_free_joints(leg: LegKinematics, theta: Angles, motion: Callable[[Indices | slice], Array]) -> Array:
-    """A motion of the joints, shape (n,), in which none at the end of its range moves outward: those are held.
-
-    Args:
-        leg: the kinematic chain.
-        theta: joint angles [rad].
-        motion: gives the motion of the joints with the given places, when all others are held.
-    """
-    result = motion(slice(None))
-    if leg.off_ends(theta):
-        return result
-    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
-    free = np.arange(len(theta))
-    while True:
-        outward = (at_lower & (result < 0)) | (at_upper & (result > 0))
-        if not outward.any():
-            return result
-        free = np.setdiff1d(free, np.flatnonzero(outward))
-        result = np.zeros(len(theta))
-        if free.size:
-            result[free] = motion(free)
+    return _within_ranges(leg, theta, step_of)
 
 
 def joint_velocity(
@@ -325,22 +245,38 @@ def joint_velocity(
 
     Args:
         leg: the kinematic chain.
-        theta: joint angles [rad] at which it is wanted; joints at the end of their range do not move outward.
+        theta: joint angles [rad]; joints at the end of their range do not move outward.
         V_PS_desired: [angular; translational] velocity of S in P, expressed in P, shape (6,) [rad/s, m/s].
         parameters: weights, and the floor that keeps the velocity finite near singular postures.
     """
     parameters = parameters or InverseKinematicsParameters()
-    weighted, angles = parameters.row_weights * V_PS_desired, tuple(theta.tolist())
-    J = leg.jacobian(angles, parameters.jacobian) * parameters.row_weights_column
+    J = parameters.row_weights[:, None] * leg.jacobian(theta, parameters.jacobian)
+    V = parameters.row_weights * V_PS_desired
+    floor = max(parameters.singular_value_floor, RANK_FLOOR)
 
-    def velocity_of(free: Indices | slice) -> Array:
-        Jf, floor = J[:, free], max(parameters.singular_value_floor, RANK_FLOOR)
-        direct = _inverse(Jf.dot(Jf.T), max(floor, WELL_CONDITIONED))
-        if direct is not None:
-            return np.asarray(direct.dot(weighted).dot(Jf))
-        U, s, Vt, _ = dgesdd(Jf, full_matrices=0)
-        inverse = s / np.maximum(s, floor) ** 2
-        velocity: Array = (Vt.T * inverse) @ (U.T @ weighted)
+    def velocity_of(free: Mask) -> Array:
+        U, s, Vt = np.linalg.svd(J[:, free], full_matrices=False)
+        velocity: Array = Vt.T @ (s / np.maximum(s, floor) ** 2 * (U.T @ V))
         return velocity
 
-    return _of_free_joints(leg, angles, velocity_of)
+    return _within_ranges(leg, theta, velocity_of)
+
+
+def _within_ranges(leg: LegKinematics, theta: Array, motion: Callable[[Mask], Array]) -> Array:
+    """Motion of the joints, shape (n,), in which no joint at the end of its range moves outward; those are held.
+
+    Args:
+        leg: the kinematic chain.
+        theta: joint angles [rad].
+        motion: motion of the joints in a mask while the others are held.
+    """
+    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
+    free = np.ones(theta.size, dtype=bool)
+    while True:
+        result = np.zeros(theta.size)
+        if free.any():
+            result[free] = motion(free)
+        outward = (at_lower & (result < 0)) | (at_upper & (result > 0))
+        if not outward.any():
+            return result
+        free &= ~outward

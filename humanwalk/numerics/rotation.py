@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from pydrake.math import RotationMatrix
+from pydrake.common.eigen_geometry import AngleAxis
 
 from humanwalk.numerics import Array
 
@@ -12,7 +12,7 @@ _LEVI_CIVITA = -np.cross(np.eye(3)[:, None], np.eye(3)).reshape(3, 9)
 
 def rotation_vector(R_WA: Array, R_WB: Array) -> Array:
     """Axis times angle [rad], in W, of the rotation that turns frame A into frame B; shape (3,)."""
-    rotation = RotationMatrix(R_WB @ R_WA.T).ToAngleAxis()
+    rotation = AngleAxis(R_WB @ R_WA.T)
     vector: Array = rotation.angle() * rotation.axis()
     return vector
 

@@ -208,13 +208,13 @@ def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_pat
 
 def broken_from(monkeypatch, begin, breaks):
     """Let the inverse kinematics break from a time [s] on."""
-    solve = inverse_kinematics_solver.InverseKinematicsSolver._solve_from
+    solve = inverse_kinematics_solver.InverseKinematicsSolver._solve
 
     def broken(self, warm, context, discrete):
         status = solve(self, warm, context, discrete)
         return breaks(self, context, discrete) if context.get_time() >= begin - 1e-9 else status
 
-    monkeypatch.setattr(inverse_kinematics_solver.InverseKinematicsSolver, "_solve_from", broken)
+    monkeypatch.setattr(inverse_kinematics_solver.InverseKinematicsSolver, "_solve", broken)
 
 
 def not_a_number(self, context, discrete):

@@ -1,4 +1,4 @@
-"""Inverse kinematics system: solved at the period and nowhere else, shown as state, honest about what it reached."""
+"""Inverse kinematics system: solved once a period, outputs are state, the status tells what was reached."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
 
-from humanwalk.body import LEG_JOINTS, SIDES
+from humanwalk.body import SIDES
+from humanwalk.body.limbs import LEGS
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters, pose_error
 from humanwalk.systems import inverse_kinematics_solver as module
 from humanwalk.systems.gait_spline_source import GaitSplineSource
@@ -26,7 +27,7 @@ def solver(plant):
 
 @pytest.fixture
 def places(joints):
-    return {side: [joints.names.index(name) for name in LEG_JOINTS[side]] for side in SIDES}
+    return {side: [joints.names.index(name) for name in LEGS[side].chain] for side in SIDES}
 
 
 def sole_target(X_PS, V_PS=V):
@@ -72,7 +73,7 @@ def test_ports(solver):
         assert (port.get_name(), port.size()) == (name, size)
 
 
-def test_initialisation_solves_for_time_zero(solver, legs, places):
+def test_initialization_solves_for_time_zero(solver, legs, places):
     context = fixed_context(solver, legs)
     initialized(solver, context)
     q, _ = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
@@ -82,12 +83,12 @@ def test_initialisation_solves_for_time_zero(solver, legs, places):
     assert solver.GetOutputPort("sample_time").Eval(context)[0] == 0.0
 
 
-def test_rates_move_the_soles_as_asked(solver, legs, places):
+def test_rates_give_the_desired_velocity_of_the_soles(solver, legs, places):
     context = fixed_context(solver, legs)
     initialized(solver, context)
     q, v = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
     for side in SIDES:
-        J = legs[side].Jv_V_PS(q[places[side]])
+        J = legs[side].jacobian(q[places[side]])
         np.testing.assert_allclose(J @ v[places[side]], V, atol=1e-9)
 
 
@@ -126,7 +127,7 @@ def test_status_of_a_reached_pose(solver, legs):
     np.testing.assert_array_equal(status[4:], [1, 1])
 
 
-def test_a_pose_out_of_reach_is_flagged_for_its_leg_alone(solver, legs, places):
+def test_a_pose_out_of_reach_is_reported_for_its_leg_only(solver, legs, places):
     context = fixed_context(solver, legs)
     far = RigidTransform(legs["Left"].X_PS(np.zeros(7)).translation() - [0.0, 0.0, 0.1])
     targets = np.concatenate((sole_target(legs["Right"].X_PS(THETA)), sole_target(far)))
@@ -160,18 +161,18 @@ def test_posture_passes_except_for_the_legs(solver, legs, places):
 
 def test_before_the_first_solution_is_the_start_posture(plant, joints):
     solver = InverseKinematicsSolver(
-        plant, InverseKinematicsParameters(), PERIOD, start_posture={"RightLegTibiaMotion": 0.7}
+        plant, InverseKinematicsParameters(), PERIOD, start_posture={LEGS["Right"].knee: 0.7}
     )
     context = solver.CreateDefaultContext()
     for port in (solver.GetOutputPort("desired_state"), solver.GetOutputPort("previous_state")):
         q, v = np.split(port.Eval(context), 2)
-        assert q[joints.names.index("RightLegTibiaMotion")] == 0.7
+        assert q[joints.names.index(LEGS["Right"].knee)] == 0.7
         assert np.count_nonzero(q) == 1
         assert not v.any()
 
 
-def test_it_keeps_the_sample_before(plant, legs):
-    """With a preview of a period, the present is always between the previous sample and the next."""
+def test_it_keeps_the_previous_sample(plant, legs):
+    """With a preview of one period the present lies between the previous sample and the next."""
     solver = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, preview=PERIOD)
     simulator = initialized(solver, fixed_context(solver, legs))
     context = simulator.get_context()
@@ -222,7 +223,7 @@ def test_angles_of_the_walk_stay_in_their_ranges(walked, joints):
 
 
 def smallest_singular_value(leg, theta):
-    return np.linalg.svd(InverseKinematicsParameters().row_weights[:, None] * leg.Jv_V_PS(theta))[1][-1]
+    return np.linalg.svd(InverseKinematicsParameters().row_weights[:, None] * leg.jacobian(theta))[1][-1]
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -247,5 +248,9 @@ def test_rates_of_the_walk_are_the_differences_of_its_angles(walked, legs, place
 
 def test_a_straight_walk_never_turns_the_legs_sideways(walked, joints):
     _, q, _, _ = walked
-    sideways = [i for i, name in enumerate(joints.names) if name.endswith(("SideMotion", "TwistMotion", "RollMotion"))]
+    sideways = [
+        joints.names.index(name)
+        for leg in LEGS.values()
+        for name in (leg.hip_abduction, leg.hip_rotation, leg.ankle_inversion, leg.ankle_rotation)
+    ]
     assert np.abs(q[:, sideways]).max() < 1e-3
