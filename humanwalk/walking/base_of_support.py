@@ -3,8 +3,6 @@
 Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
 """
 
-from __future__ import annotations
-
 import cmath
 from dataclasses import dataclass
 

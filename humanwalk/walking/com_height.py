@@ -1,7 +1,5 @@
 """Height of the center of mass above the ground under the support: a mean, and an arc over each stance leg."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

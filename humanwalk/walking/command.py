@@ -1,7 +1,5 @@
 """The commanded velocity over time: target speeds at given times, approached at bounded rates."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

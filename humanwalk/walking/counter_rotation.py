@@ -1,7 +1,5 @@
 """Rotation of pelvis, chest and arms with and against the legs."""
 
-from __future__ import annotations
-
 import cmath
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ A foothold is a complex number x + iy [m] in the frame of the step: origin at th
 The limits were found with simulated pushes (docs/balance.md, "What a push teaches").
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """References of the feet: the stance foot, the foot behind in double support, and the swinging foot."""
 
-from __future__ import annotations
-
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters

@@ -1,7 +1,5 @@
 """How a loaded foot rolls: over the heel after touchdown, over the ball before toe-off (Perry's rockers)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from humanwalk.numerics.scalars import clip

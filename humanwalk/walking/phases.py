@@ -3,8 +3,6 @@
 STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
 """
 
-from __future__ import annotations
-
 from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
 from humanwalk.terrain.terrain import Terrain

@@ -1,7 +1,5 @@
 """Pushes of the body as data."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ of the step runs faster if that foothold is out of reach. The equations are thos
 Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The clock of a step: double support, then single support; it runs faster for a foothold that is out of reach."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from humanwalk.quantity import quantity

@@ -4,8 +4,6 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 origin at the ankle, and the axes of W when the foot stands flat and faces +x.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 from typing import Self

@@ -1,7 +1,5 @@
 """The desired periodic gait, and the nominal zero-moment point from now to the end of the step."""
 
-from __future__ import annotations
-
 import cmath
 
 from humanwalk.walking.command import Command

@@ -1,0 +1,88 @@
+"""References of the feet: heel strike, flat, heel-off and swing in their order, without jumps."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.walking.command import Command
+from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
+from humanwalk.walking.swing_foot import LANDING_DEPTH, PlanarMotion, SwingProfile
+from humanwalk.walking.walking_reference import FootTask, Phase
+
+PARAMETERS = StepPlannerParameters()
+TIMING, ROCKERS = PARAMETERS.timing, PARAMETERS.rockers
+ANKLE = 0.07
+WALK = Command(1.0)
+OLD, STANCE, NEXT = Foothold(-0.1j, 0.0), Foothold(0.5 + 0.1j, 0.0), Foothold(1.0 - 0.1j, 0.0)
+
+
+def state_at(elapsed, steps=1):
+    phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
+    path = CommandedPath.begin(0.0, 0.0)
+    return PlannerState(phase, elapsed, "Left", OLD, STANCE, 0.0, 0.0, 0.0, path, height=0.9, steps=steps)
+
+
+def swing_to(foothold, toes=0.5):
+    profile = SwingProfile.from_toe_off(
+        ANKLE + 0.05, 0.2, 0.9, 3.0, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing
+    )
+    return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes)
+
+
+@pytest.mark.parametrize(
+    "elapsed, steps, task",
+    [
+        (0.5 * ROCKERS.heel, 1, FootTask.HEEL_STRIKE),
+        (0.5 * ROCKERS.heel, 0, FootTask.FLAT),
+        (0.5 * TIMING.step, 1, FootTask.FLAT),
+        (TIMING.step - 0.5 * ROCKERS.ball, 1, FootTask.HEEL_OFF),
+    ],
+)
+def test_the_stance_foot_rolls_from_heel_strike_to_heel_off(elapsed, steps, task):
+    reference = stance_foot(state_at(elapsed, steps), swing_to(NEXT), WALK, PARAMETERS)
+    assert (reference.task, reference.load) == (task, 1.0)
+
+
+def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot():
+    before = stance_foot(state_at(TIMING.step - 1e-9), swing_to(NEXT), WALK, PARAMETERS)
+    after = foot_behind(state_at(0.0), WALK, PARAMETERS)
+    assert after.pitch == pytest.approx(before.pitch, abs=1e-6)
+
+
+@given(st.floats(0.0, 1.0))
+def test_the_foot_behind_is_unloaded_in_double_support(fraction):
+    reference = foot_behind(state_at(fraction * TIMING.double_support), WALK, PARAMETERS)
+    assert reference.load == pytest.approx(1.0 - fraction, abs=1e-9)
+
+
+@given(st.floats(-1.0, 1.5), st.floats(-1.0, 1.5))
+def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_steps(forward, length):
+    speed = rollover_speed(state_at(0.0), complex(length, 0.2), Command(forward), PARAMETERS)
+    assert speed <= forward
+    if length <= 0.0:
+        assert speed <= 0.0
+    if length >= forward * TIMING.step > 0.0:
+        assert speed == forward
+
+
+@given(st.floats(-0.2, 0.2))
+def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground):
+    foothold = Foothold(NEXT.position, ground)
+    end = swinging_foot(state_at(TIMING.step), swing_to(foothold), 1.0, PARAMETERS)
+    assert end.height.value == pytest.approx(ground + ANKLE - LANDING_DEPTH)
+    assert end.pitch.value == pytest.approx(-0.25)
+    assert end.toes == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+@given(st.floats(0.05, 0.95), st.floats(1.0, 1.8))
+def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progress, rate):
+    elapsed, h = TIMING.double_support + progress * TIMING.single_support, 1e-6
+    swing = swing_to(Foothold(NEXT.position, 0.1))
+    before, here, after = (swinging_foot(state_at(elapsed + rate * d), swing, rate, PARAMETERS) for d in (-h, 0.0, h))
+    for name in ("height", "pitch"):
+        change = getattr(after, name).value - getattr(before, name).value
+        assert change / (2.0 * h) == pytest.approx(getattr(here, name).rate, abs=1e-3)
+    assert (after.toes[0] - before.toes[0]) / (2.0 * h) == pytest.approx(here.toes[1], abs=1e-3)

@@ -1,0 +1,73 @@
+"""The desired gait has the commanded velocity and width; the nominal zero-moment point goes from foot to foot."""
+
+import cmath
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.body import SIDES
+from humanwalk.walking.command import Command
+from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import Foothold, PlannerState
+from humanwalk.walking.walking_reference import Phase
+from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
+
+PARAMETERS = StepPlannerParameters()
+TIMING, PLACEMENT = PARAMETERS.timing, PARAMETERS.placement
+speeds = st.floats(-0.5, 1.5)
+sideways = st.floats(-0.3, 0.3)
+
+
+def state_at(elapsed=0.0, phase=Phase.DOUBLE_SUPPORT, stance="Left", heading=0.0, **changes):
+    u = cmath.exp(1j * heading)
+    feet = {"right": Foothold(-0.1j * u, 0.0), "left": Foothold((0.5 + 0.1j) * u, 0.0)}
+    path = CommandedPath.begin(0.0, heading)
+    state = PlannerState(phase, elapsed, stance, **feet, support_start=0.0, heading=heading, old_heading=heading,
+                         path=path, height=0.9)  # fmt: skip
+    return state._replace(**changes)
+
+
+@given(speeds, sideways)
+def test_two_steps_advance_by_the_commanded_velocity(forward, left):
+    gait = desired_gait(state_at(), Command(forward, left), PARAMETERS)
+    stride = gait.displacement.left + gait.displacement.right
+    assert stride == pytest.approx(2.0 * TIMING.step * complex(forward, left))
+
+
+@given(speeds, sideways)
+def test_every_step_has_at_least_the_minimum_width(forward, left):
+    gait = desired_gait(state_at(), Command(forward, left), PARAMETERS)
+    assert -gait.displacement.left.imag >= PLACEMENT.min_width - 1e-9
+    assert gait.displacement.right.imag >= PLACEMENT.min_width - 1e-9
+
+
+@given(st.floats(-0.5, 0.5))
+def test_in_a_turn_the_heading_changes_at_the_turn_rate_of_the_path(turn):
+    assert desired_gait(state_at(turn=turn), Command(0.5), PARAMETERS).turn == pytest.approx(turn * TIMING.step)
+
+
+def test_the_velocity_towards_the_path_adds_to_the_command():
+    corrected = desired_gait(state_at(path_correction=0.1 + 0.05j), Command(0.5), PARAMETERS)
+    commanded = desired_gait(state_at(), Command(0.6, 0.05), PARAMETERS)
+    assert corrected.displacement == pytest.approx(commanded.displacement)
+
+
+def test_walking_backward_the_zero_moment_point_does_not_roll():
+    assert desired_gait(state_at(), Command(-0.5), PARAMETERS).roll == 0.0
+    assert desired_gait(state_at(), Command(0.5), PARAMETERS).roll.real > 0.0
+
+
+@given(st.sampled_from(SIDES), st.floats(0.0, 0.99), st.floats(-3.0, 3.0))
+def test_the_remaining_segments_last_to_the_end_of_the_step_and_are_connected(stance, fraction, heading):
+    elapsed = fraction * TIMING.step
+    phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
+    state = state_at(elapsed, phase, stance, heading)
+    segments = remaining_zmp(state, desired_gait(state, Command(1.0), PARAMETERS), PARAMETERS)
+    assert sum(segment.duration for segment in segments) == pytest.approx(TIMING.step - elapsed)
+    for first, second in pairwise(segments):
+        assert first.end == pytest.approx(second.start)
+    end = PARAMETERS.support.center + PARAMETERS.support.roll * 1.0
+    assert state.local(segments[-1].end) == pytest.approx(end, abs=1e-9)
