@@ -1,1 +1,1 @@
-"""Contact of feet and ground: the asperity law and its implicit step, contact of the legs, forces of the feet."""
+"""Contact of feet and ground, the asperity law and its implicit step, contact of the legs, ground reactions."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import cross_matrix
 from humanwalk.terrain import Terrain
 
 UNLOADED_N = 1.0
@@ -60,7 +61,7 @@ def foot_force(p_WQ: Array, f_W: Array, terrain: Terrain, m_W: Array | float = 0
     f_x, f_y, f_n = R_SW @ f_total
     if f_n <= UNLOADED_N:
         return unloaded
-    m_x, m_y, m_n = R_SW @ (np.cross(p_WQ - p_WS, f_W) + m_W).sum(axis=0)
+    m_x, m_y, m_n = R_SW @ (np.matvec(cross_matrix(p_WQ - p_WS), f_W) + m_W).sum(axis=0)
     # The moment about the center of pressure has no tangential component (Winter 2009, section 5.2.9).
     x, y = -m_y / f_n, m_x / f_n
     return FootForce(

@@ -1,9 +1,9 @@
-"""The ground as a surface over the level plane, and the solids that Drake collides and draws."""
+"""The ground as a surface, and its geometry in Drake."""
 
 from humanwalk.terrain.plane import Plane
 from humanwalk.terrain.terrain import GroundProperties, Terrain
 
 TERRAINS: dict[str, type[Terrain]] = {"plane": Plane}
-"""The terrains that a scenario can name."""
+"""Terrains by their tag in a scenario."""
 
 __all__ = ["TERRAINS", "GroundProperties", "Plane", "Terrain"]

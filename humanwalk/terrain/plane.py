@@ -1,4 +1,4 @@
-"""An infinite plane through the world's origin: level ground, or one even slope."""
+"""An infinite plane through the world's origin: level ground or a slope."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from humanwalk.terrain.terrain import GroundProperties, surface_axes
 LENGTH = 60
 WIDTH = 10
 BEHIND = 6
-"""Size of the drawn floor, and how much of its length lies behind the start [m]; the half-space is infinite."""
+"""Length and width of the drawn floor, and the part of its length behind the origin [m]; the half-space is infinite."""
 
 THICKNESS = 0.02
 """Thickness of the drawn floor and of its lines [m]."""
@@ -31,18 +31,18 @@ _Box = tuple[str, tuple[float, float, float], tuple[float, float, float], Array]
 
 LINE_WIDTH = 0.012
 MARK_WIDTH = 0.03
-"""Width of the line at every meter, and at every fifth across the walk [m]."""
+"""Widths of the lines at every meter, and of every fifth line across the walk [m]."""
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Level ground by default."""
+    """A plane through the origin of W, level by default."""
 
     slope: float = quantity(0.0, "rad", -0.5, 0.5)
-    """Angle along x; positive goes up."""
+    """Inclination along x, positive upward."""
 
     cross_slope: float = quantity(0.0, "rad", -0.5, 0.5)
-    """Angle along y; positive goes up to the left."""
+    """Inclination along y, positive upward to the left."""
 
     friction_coefficient: float = quantity(0.7, "", 0.05, 1.3)
     """Coulomb coefficient between sole and ground, static and dynamic (thesis 2.5)."""
@@ -71,7 +71,7 @@ class Plane:
         return np.full(xy.shape[:-1], self.friction_coefficient)
 
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
-        """Register a half-space to stand on, and a floor with a line at every meter to look at."""
+        """Register an infinite half-space for contact, and a floor with a line at every meter for pictures."""
         X_WS = RigidTransform(RotationMatrix(self._R_SW.T), np.zeros(3))
         plant.RegisterCollisionGeometry(
             plant.world_body(), X_WS, HalfSpace(), "ground", properties(self.friction_coefficient)
@@ -85,7 +85,7 @@ class Plane:
 def _floor() -> list[_Box]:
     """Boxes of the drawn floor in the surface frame: name, center [m], edges [m], color.
 
-    Floor and lines have tops of their own: of two surfaces at one height neither is drawn reliably.
+    The tops of floor and lines differ in height, because coplanar surfaces are not drawn reliably.
     """
     middle = 0.5 * LENGTH - BEHIND
     boxes: list[_Box] = [("floor", (middle, 0.0, -0.002 - 0.5 * THICKNESS), (LENGTH, WIDTH, THICKNESS), FLOOR_COLOR)]

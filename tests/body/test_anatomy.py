@@ -125,7 +125,7 @@ def test_whole_body_mass_properties(body: Skeleton) -> None:
     assert 0.55 <= body.com[2] / body.stature <= 0.565
 
 
-def test_every_body_can_exist(body: Skeleton) -> None:
+def test_every_body_satisfies_the_strict_triangle_inequality(body: Skeleton) -> None:
     for segment in body.segments:
         moments = np.sort(segment.inertia)
         assert moments[0] > 0.0, segment.name
@@ -212,7 +212,7 @@ def test_leg_joints_are_the_chain_from_hip_to_hind_foot(body: Skeleton, side: st
     assert len(chain) == 7
 
 
-def test_every_joint_says_where_its_numbers_come_from(body: Skeleton) -> None:
+def test_every_joint_has_sources_of_its_numbers(body: Skeleton) -> None:
     for joint in body.joints:
         assert joint.motion
         assert joint.range_source

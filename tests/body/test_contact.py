@@ -8,7 +8,7 @@ from humanwalk.body.contact import rectangle_patch
 
 
 @pytest.mark.parametrize("grid", [(2, 2), (3, 2), (5, 4)])
-def test_a_face_is_shared_out_to_points_that_reach_its_rim(grid):
+def test_the_area_of_a_face_is_divided_among_points_up_to_its_rim(grid):
     patch = rectangle_patch("box", (0.1, 0.2, 0.3), (0.4, 0.3, 0.2), grid)
     assert patch.p_BoQ_B.shape == (grid[0] * grid[1], 3)
     np.testing.assert_allclose(patch.p_BoQ_B.min(axis=0), [-0.1, 0.05, 0.2])

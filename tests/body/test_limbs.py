@@ -30,11 +30,11 @@ def test_bodies_are_of_the_model(plant):
     assert all(plant.HasBodyNamed(body) for body in (PELVIS, CHEST, HEAD))
 
 
-def test_the_other_side_of_the_other_side_is_this_side():
+def test_the_opposite_of_the_opposite_side_is_the_side():
     assert all(other_side(other_side(side)) == side != other_side(side) for side in SIDES)
 
 
-def test_arms_move_the_way_their_joints_are_called():
+def test_arm_joints_move_in_the_direction_of_their_names():
     for arm in ARMS.values():
         assert "elbow" in human().joint(arm.elbow).motion
         assert all("shoulder" in human().joint(name).motion for name in arm.shoulder)

@@ -20,7 +20,7 @@ def standing(skeleton):
     return {m.name: skeleton.origins[m.body] + np.array(m.position) for m in markers(skeleton)}
 
 
-def test_plug_in_gait_is_complete_and_told_from_the_rest(skeleton):
+def test_plug_in_gait_is_complete_and_distinguished_from_other_markers(skeleton):
     assert {m.name for m in markers(skeleton) if m.plug_in_gait} == PLUG_IN_GAIT
     assert len(PLUG_IN_GAIT) == 39
 
@@ -41,13 +41,13 @@ def test_sides_mirror_each_other(skeleton):
 
 
 @pytest.mark.parametrize(("mass", "stature"), [(55.0, 1.6), (95.0, 2.0), (70.0, 1.75)])
-def test_markers_grow_with_the_body(mass, stature):
+def test_markers_scale_with_the_body(mass, stature):
     scaled = standing(Subject(mass, stature).skeleton)
     for name, place in standing(human()).items():
         np.testing.assert_allclose(scaled[name], place * stature / 1.75, atol=1e-9)
 
 
-def test_landmarks_lie_as_in_anatomy(skeleton):
+def test_positions_of_landmarks_are_anatomical(skeleton):
     p = standing(skeleton)
     assert p["RFHD"][2] > p["C7"][2] > p["CLAV"][2] > p["STRN"][2] > p["RASI"][2] > p["RKNE"][2] > p["RANK"][2]
     assert p["RASI"][0] > 0 > p["RPSI"][0]

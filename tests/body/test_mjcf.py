@@ -29,7 +29,7 @@ def test_bodies_joints_and_motors_are_the_skeletons(model, skeleton):
     assert len(list(model.iter("freejoint"))) == 1
 
 
-def test_every_body_hangs_on_its_parent(model, skeleton):
+def test_bodies_have_their_parents(model, skeleton):
     children = {child.get("name"): body.get("name") for body in model.iter("body") for child in body.findall("body")}
     assert children == {inboard.child: inboard.parent for inboard in (*skeleton.joints, *skeleton.welds)}
 
@@ -71,7 +71,7 @@ def both(request):
     return Both(request.param)
 
 
-def test_positions_go_there_and_back(both):
+def test_positions_survive_the_round_trip(both):
     q, T = both.move(np.random.default_rng(1))
     assert np.array_equal(both.map.to_q(both.map.to_qpos(q)), q)
     assert np.allclose(T @ T.T, np.eye(T.shape[0]), atol=1e-14)
@@ -96,7 +96,7 @@ def test_gravity_and_gyroscopic_forces_are_equal(both):
 
 
 @pytest.mark.parametrize("name", ["Head", "RightArm_Hand", "LeftLeg_FootToes"])
-def test_bodies_move_alike(both, name):
+def test_bodies_have_equal_motion(both, name):
     both.move(np.random.default_rng(4))
     body = both.plant.GetBodyByName(name)
     assert both.data.body(name).xpos == pytest.approx(body.EvalPoseInWorld(both.context).translation(), abs=1e-9)

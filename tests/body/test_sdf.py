@@ -79,7 +79,7 @@ def lowest_point(shape: object, X_WG: RigidTransform) -> float:
     return float(X_WG.translation()[2] - reach)
 
 
-def test_committed_file_is_what_the_writer_writes() -> None:
+def test_the_committed_model_file_is_up_to_date() -> None:
     assert COMMITTED.read_bytes() == to_sdf(human()).encode(), "run `humanwalk model`"
 
 
@@ -137,7 +137,7 @@ def test_mass_properties_survive_the_file(parsed: Parsed) -> None:
         np.testing.assert_allclose(I_BBcm, segment.inertia, rtol=1e-5, atol=1e-10)
 
 
-def test_bodies_stand_where_the_skeleton_has_them(parsed: Parsed) -> None:
+def test_bodies_have_the_positions_of_the_skeleton(parsed: Parsed) -> None:
     for name, p_WB in parsed.skeleton.origins.items():
         X_WB = parsed.plant.EvalBodyPoseInWorld(parsed.context, parsed.plant.GetBodyByName(name))
         np.testing.assert_allclose(X_WB.translation(), p_WB, atol=1e-8)
@@ -215,7 +215,7 @@ def test_the_visible_head_ends_at_the_stature(parsed: Parsed) -> None:
     assert highest == pytest.approx(parsed.skeleton.stature, rel=0.003)
 
 
-def test_every_big_segment_can_be_seen(parsed: Parsed) -> None:
+def test_every_large_segment_is_visible(parsed: Parsed) -> None:
     seen = {name for name, _, _ in parsed.shapes(Role.kIllustration)}
     for segment in parsed.skeleton.segments:
         if segment.mass > parsed.skeleton.total_mass / 70.0:

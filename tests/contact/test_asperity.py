@@ -66,7 +66,7 @@ def test_damping_counts_by_its_separation_factor_while_the_surfaces_part(factor)
     assert normal(law, 1e-3, -0.05) == pytest.approx(1e-3 * (5e4 - factor * 4e5 * 0.05))
 
 
-def test_stiction_lets_a_point_pull_so_much_and_no_more():
+def test_stiction_limits_the_pull_on_a_point():
     sticky = dataclasses.replace(LAW, stiction=3.0)
     assert normal(sticky, 1e-5, -1.0) == -3.0
     assert normal(sticky, -1e-5, -1.0) == 0.0
@@ -137,7 +137,7 @@ def test_multipliers_change_the_coefficient_over_time_and_pressure():
 
 
 @given(normal=st.floats(-3.0, 100.0), load=st.floats(0.0, 100.0))
-def test_friction_is_bound_by_the_lesser_of_force_and_mean_and_never_by_a_pull(normal, load):
+def test_friction_is_limited_by_the_smaller_of_normal_force_and_its_mean(normal, load):
     law = dataclasses.replace(LAW, stiction=3.0)
     bound = friction_bound(law, MU, np.array([normal]), np.array([load]), AREA, 0.0)
     assert bound[0] == pytest.approx(0.7 * max(0.0, min(normal, load)))

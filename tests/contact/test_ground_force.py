@@ -1,4 +1,4 @@
-"""Ground reaction on a foot: what a force plate below it, tangent to the terrain, would measure."""
+"""Ground reaction on a foot, as measured by a force plate tangent to the terrain."""
 
 import dataclasses
 
@@ -76,7 +76,7 @@ def test_on_curved_ground_the_plane_is_tangent_below_the_foot(waves, x, y):
 
 
 @given(x1=PLACES, x2=PLACES, f1=LOADS, f2=LOADS)
-def test_two_vertical_forces_have_their_center_between_them_nearer_to_the_larger(x1, x2, f1, f2):
+def test_the_center_of_two_vertical_forces_divides_their_distance(x1, x2, f1, f2):
     foot = reaction(LEVEL, [(x1, 0.1, 0.0), (x2, 0.1, 0.0)], [(0.0, 0.0, f1), (0.0, 0.0, f2)])
     np.testing.assert_allclose(foot.p_WCop, [(f1 * x1 + f2 * x2) / (f1 + f2), 0.1, 0.0], atol=1e-9)
 

@@ -1,4 +1,4 @@
-"""One leg stops the other, and nothing else is touched by its capsules."""
+"""The legs collide with each other, and their capsules with nothing else."""
 
 import pytest
 
@@ -36,11 +36,11 @@ def diagram():
     return walker()
 
 
-def test_legs_that_stand_do_not_touch(diagram):
+def test_standing_legs_do_not_touch(diagram):
     assert pairs(diagram) == set()
 
 
-def test_legs_that_cross_do(diagram):
+def test_legs_that_cross_touch(diagram):
     crossed = pairs(diagram, **CROSSED)
     assert crossed
     assert all({SIDE_OF[body] for body in pair} == {"Right", "Left"} for pair in crossed)
@@ -50,6 +50,6 @@ def test_a_bent_leg_does_not_touch_itself(diagram):
     assert pairs(diagram, **{LEGS["Right"].knee: 2.2, LEGS["Right"].hip_flexion: 1.2}) == set()
 
 
-def test_without_it_they_pass_through_each_other():
+def test_without_leg_contact_the_legs_pass_through_each_other():
     ghost = walker(**{"contact.point.leg_contact": "false"})
     assert pairs(ghost, **CROSSED) == set()

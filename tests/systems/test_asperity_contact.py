@@ -1,4 +1,4 @@
-"""Asperity contact as a system: blocks that stand, stick, slide, break away and bounce as physics says."""
+"""Asperity contact as a system: blocks stand, stick, slide, break away and bounce as mechanics predicts."""
 
 import dataclasses
 import math
@@ -57,7 +57,7 @@ class Block:
         self.push(0.0)
 
     def push(self, force):
-        """A force along the slope through the centre of mass [N]."""
+        """A force along the slope through the center of mass [N]."""
         generalized = np.zeros(6)
         generalized[3:] = self.R @ np.array([force, 0.0, 0.0])
         self.plant.get_applied_generalized_force_input_port().FixValue(self.context, generalized)
@@ -141,7 +141,7 @@ def test_below_the_friction_angle_it_sticks(share, duration, step):
 
 
 @pytest.mark.parametrize("share", [1.05, 1.5])
-def test_above_the_friction_angle_it_slides_as_coulomb_says(share):
+def test_above_the_friction_angle_it_slides_with_coulomb_friction(share):
     slope = math.atan(share * MU)
     block = Block(slope).until(0.3)
     before = block.velocity[0]
@@ -189,7 +189,7 @@ def test_it_breaks_away_at_the_breaking_factor_times_mu_times_its_weight(factor)
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
-def test_a_bouncing_ball_loses_energy_as_its_damping_says(ratio):
+def test_a_bouncing_ball_has_the_restitution_of_its_damping(ratio):
     """Coefficient of restitution of a linear spring-damper that never pulls (Schwager and Poeschel 2007)."""
     omega = 300.0
     point = SolePatch("block", np.array([[0.0, 0.0, -0.5 * SIZE[2]]]), np.array([1e-3]))

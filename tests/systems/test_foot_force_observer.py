@@ -1,4 +1,4 @@
-"""Foot force observer: in quiet standing the feet carry the weight within their soles, in the air nothing."""
+"""Foot force observer: in quiet standing the feet carry the weight within their soles."""
 
 import dataclasses
 
