@@ -31,19 +31,16 @@ LABELS = {("view/plots/gait_cycle.py", "Pelvis")}
 
 PENDING: dict[str, dict[str, str]] = {
     "name": {
-        "founder": "choices/balanced.py choices/start.py",
         "h3": "gait/arm_swing.py",
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py",
     },
     "size": {
-        "founder": "scenario.py",
         "h6": "cli/main.py",
     },
     "array": {
         "h3": "gait/thesis_path.py",
-        "h5": "measures/effort.py measures/events.py measures/gait_measures.py measures/human_likeness.py "
-        "measures/summary.py",
+        "h5": "measures/effort.py measures/human_likeness.py measures/summary.py",
         "h6": "view/plots/drawing.py view/plots/ground.py view/plots/thesis_figures.py",
     },
 }
