@@ -39,6 +39,6 @@ def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
         raise ParameterError(f"--to {to}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
     if to in NEED_PHYSICS:
         run.require_physics()
-    folder = run.path / to if output is None else output
+    folder = run.subfolder(to) if output is None else output
     make_folder(folder)
     return FORMATS[to](run, folder)

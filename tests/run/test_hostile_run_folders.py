@@ -1,0 +1,352 @@
+"""Run folders that somebody else made, by accident or on purpose: each is read or refused in one printable line."""
+
+import json
+import os
+import shutil
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from humanwalk.exchange import export_run
+from humanwalk.measures.signals import TIME
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import RECORDING, REPLAY, SCENARIO, SIGNALS, SUMMARY, Run
+from humanwalk.run.outcome import Outcome
+from humanwalk.run.provenance import signals_hash
+from humanwalk.run.simulate import simulate
+from humanwalk.run.stored import MAX_COLUMNS, MAX_ROWS, before_runaway, required_columns
+from humanwalk.scenario import load_scenario
+from humanwalk.view.plots import PLOTS, write_plots
+from humanwalk.view.report import compare_run, to_json
+
+DURATION = 0.05
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A run as the simulation leaves it."""
+    outcome = simulate(load_scenario("thesis", {"duration": str(DURATION)}))
+    return outcome.save(tmp_path_factory.mktemp("made") / "run").path
+
+
+@pytest.fixture
+def folder(made, tmp_path):
+    """A copy of it to change."""
+    return shutil.copytree(made, tmp_path / "run")
+
+
+def read(folder):
+    """Everything that is read of a run."""
+    run = Run.open(folder)
+    return run.summary, run.scenario, run.signals
+
+
+def refusal(use, *arguments) -> str:
+    with pytest.raises(ParameterError) as raised:
+        use(*arguments)
+    message = str(raised.value)
+    assert message.isprintable()
+    assert len(message) < 2000
+    return message
+
+
+def is_read(folder) -> bool:
+    """Whether a run is read; otherwise it is refused in one line, and nothing else is raised."""
+    try:
+        read(folder)
+    except ParameterError as error:
+        assert str(error).isprintable()
+        return False
+    return True
+
+
+def test_run_as_it_was_written_is_read(folder):
+    assert is_read(folder)
+
+
+# The summary.
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"[]",
+        b"{}",
+        b"null",
+        b"3",
+        b'"x"',
+        b"{" * 100_000,
+        b"[" * 900_000,
+        b'{"a":' * 100_000 + b"1" + b"}" * 100_000,
+        b"\xff\xfe{}",
+        b"{} {}",
+        b"\0",
+        b" " * 2_000_000,
+    ],
+    ids=lambda content: repr(content[:8]),
+)
+def test_what_is_no_summary_is_refused(folder, content):
+    (folder / SUMMARY).write_bytes(content)
+    assert SUMMARY in refusal(read, folder)
+
+
+def test_summary_with_a_byte_order_mark_is_read(folder):
+    (folder / SUMMARY).write_bytes(b"\xef\xbb\xbf" + (folder / SUMMARY).read_bytes())
+    assert is_read(folder)
+
+
+WRONG = ["x", -1.5, True, None, [], {}, {"right": 1}, float("nan"), float("inf"), 10**400, "\x1b[2J" * 300]
+
+
+@pytest.mark.parametrize("value", WRONG, ids=lambda value: repr(value)[:12])
+def test_field_of_another_type_is_refused_by_its_name(folder, value):
+    summary = json.loads((folder / SUMMARY).read_text())
+    refused = set()
+    for key in summary:
+        (folder / SUMMARY).write_text(json.dumps(summary | {key: value}))
+        if not is_read(folder):
+            refused.add(key)
+            assert key in refusal(read, folder)
+    assert {"provenance", "gait", "foot_lift_m", "peak_torque_N_m", "versions", "duration_s"} - refused <= (
+        {"peak_torque_N_m", "versions"} if value == {} else {"gait"} if value is None else {"duration_s"}
+    )
+
+
+@pytest.mark.parametrize("field", ["signals_sha256", "versions", "seed"])
+def test_provenance_without_a_field_is_refused(folder, field):
+    summary = json.loads((folder / SUMMARY).read_text())
+    del summary["provenance"][field]
+    (folder / SUMMARY).write_text(json.dumps(summary))
+    assert f"provenance.{field}: missing" in refusal(read, folder)
+
+
+def test_field_and_joint_that_are_unknown_are_refused_without_their_control_characters(folder):
+    summary = json.loads((folder / SUMMARY).read_text())
+    (folder / SUMMARY).write_text(json.dumps(summary | {"\x1b]0;x\x07": 1}))
+    assert r"\x1b]0;x\x07: no such field" in refusal(read, folder)
+    (folder / SUMMARY).write_text(json.dumps(summary | {"tracking_error_rad": {"Tail": 1.0}}))
+    assert "tracking_error_rad" in refusal(read, folder)
+
+
+# The signals.
+
+
+def rewrite(folder, change):
+    """Change the signals and state their hash, as somebody would who wants them to be read."""
+    table = change(pq.read_table(folder / SIGNALS))
+    pq.write_table(table, folder / SIGNALS)
+    summary = json.loads((folder / SUMMARY).read_text())
+    numbers = [field.name for field in table.schema if field.type == pa.float64()]
+    if len(set(table.column_names)) == len(table.column_names):
+        summary["provenance"]["signals_sha256"] = signals_hash(table.select(numbers))
+    (folder / SUMMARY).write_text(json.dumps(summary))
+
+
+def replaced(table, name, values):
+    return table.set_column(table.column_names.index(name), name, [values])
+
+
+def with_value(name, row, value):
+    def change(table):
+        values = table[name].to_numpy().copy()
+        values[row] = value
+        return replaced(table, name, values)
+
+    return change
+
+
+def with_type(kind):
+    return lambda table: replaced(table, "com.x_m", pa.array([None] * table.num_rows, kind))
+
+
+KNEE = "RightLegTibiaMotion.angle_rad"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda table: table.slice(0, 0), "0 rows"),
+        (lambda table: table.drop_columns("com.z_m"), "1 columns are missing, first com.z_m"),
+        (lambda table: table.select([TIME]), "columns are missing"),
+        (lambda table: table.append_column("com.z_m", table["com.z_m"]), "com.z_m comes twice"),
+        (lambda table: table.append_column("\x1b[2J", table["com.z_m"]), r"\x1b[2J has no name"),
+        (lambda table: table.append_column("x" * 200, table["com.z_m"]), "has no name"),
+        (with_type(pa.string()), "com.x_m is of type string"),
+        (with_type(pa.int64()), "com.x_m is of type int64"),
+        (with_type(pa.float32()), "com.x_m is of type float"),
+        (with_type(pa.list_(pa.float64())), "com.x_m is of type list"),
+        (with_type(pa.struct({"a": pa.float64()})), "com.x_m is of type struct"),
+        (with_type(pa.float64()), "com.x_m has a value that is not finite"),
+        (with_value(KNEE, 3, np.nan), f"{KNEE} has a value that is not finite"),
+        (with_value(KNEE, 3, -np.inf), f"{KNEE} has a value that is not finite"),
+        (with_value(KNEE, 3, 1e10), "beyond 1e"),
+        (with_value(TIME, 3, 1e-3), "not a multiple"),
+        (lambda table: replaced(table, TIME, table[TIME].to_numpy()[::-1]), "not a multiple"),
+        (lambda table: replaced(table, TIME, np.zeros(table.num_rows)), "not a multiple"),
+    ],
+)
+def test_what_is_no_record_is_refused(folder, change, said):
+    rewrite(folder, change)
+    assert said in refusal(read, folder)
+
+
+def test_orientation_that_is_none_is_refused(folder):
+    def zero(table):
+        for axis in "wxyz":
+            table = replaced(table, f"pelvis.quaternion_{axis}", np.zeros(table.num_rows))
+        return table
+
+    rewrite(folder, zero)
+    assert "pelvis.quaternion is zero" in refusal(read, folder)
+
+
+def test_record_of_too_many_rows_or_columns_is_refused_before_it_is_loaded(folder, monkeypatch):
+    monkeypatch.setattr(pq.ParquetFile, "read", lambda *arguments, **more: pytest.fail("loaded"))
+    pq.write_table(pa.table({TIME: np.zeros(2_000_000)}), folder / SIGNALS)
+    assert f"2000000 rows; allowed: 1 to {MAX_ROWS}" in refusal(read, folder)
+    pq.write_table(pa.table({f"column {i}": [0.0] for i in range(MAX_COLUMNS + 1)}), folder / SIGNALS)
+    assert f"{MAX_COLUMNS + 1} columns" in refusal(read, folder)
+
+
+def test_record_that_was_changed_is_refused(folder):
+    table = pq.read_table(folder / SIGNALS)
+    pq.write_table(with_value(KNEE, 3, 0.1)(table), folder / SIGNALS)
+    assert "changed since the run" in refusal(read, folder)
+
+
+@pytest.mark.parametrize("content", [b"", b"PAR1", b"PAR1PAR1", b"not Parquet", b"PAR1" + b"\xff" * 100 + b"PAR1"])
+def test_what_is_no_parquet_file_is_refused(folder, content):
+    (folder / SIGNALS).write_bytes(content)
+    assert "not a Parquet file" in refusal(read, folder)
+
+
+def test_record_ends_before_a_state_that_has_run_away():
+    table = pa.table({TIME: np.arange(6.0), "a": [0.0, 1.0, 2.0, 1e12, np.nan, 0.0], "b": [0.0] * 6})
+    assert before_runaway(table).to_pydict() == {TIME: [0.0, 1.0, 2.0], "a": [0.0, 1.0, 2.0], "b": [0.0] * 3}
+    assert before_runaway(table.slice(0, 3)).equals(table.slice(0, 3))
+    assert before_runaway(table.slice(4)).num_rows == 0
+
+
+# Damage.
+
+
+@pytest.mark.parametrize("name", [SUMMARY, SIGNALS, SCENARIO])
+@pytest.mark.parametrize("seed", range(40))
+def test_flipped_bits_are_read_or_refused(folder, name, seed):
+    random = np.random.default_rng(seed)
+    content = bytearray((folder / name).read_bytes())
+    for place in random.integers(0, len(content), random.integers(1, 4)):
+        content[place] ^= 1 << int(random.integers(8))
+    (folder / name).write_bytes(content)
+    is_read(folder)
+
+
+@pytest.mark.parametrize("name", [SUMMARY, SIGNALS, SCENARIO])
+@pytest.mark.parametrize("seed", range(20))
+def test_truncated_file_is_read_or_refused(folder, name, seed):
+    content = (folder / name).read_bytes()
+    length = int(np.random.default_rng(seed).integers(len(content)))
+    (folder / name).write_bytes(content[:length])
+    assert not is_read(folder) or name == SCENARIO
+
+
+# What leads out of the folder.
+
+
+@pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
+def test_link_out_of_the_folder_is_refused(folder, tmp_path, name):
+    (folder / name).rename(tmp_path / name)
+    (folder / name).symlink_to(tmp_path / name)
+    assert "leads out of" in refusal(read, folder)
+
+
+@pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
+@pytest.mark.parametrize("kind", ["fifo", "folder", "device"])
+def test_what_is_no_regular_file_is_refused_at_once(folder, name, kind):
+    (folder / name).unlink()
+    if kind == "fifo":
+        os.mkfifo(folder / name)
+    elif kind == "folder":
+        (folder / name).mkdir()
+    else:
+        (folder / name).symlink_to("/dev/zero")
+    refusal(read, folder)
+
+
+@pytest.mark.parametrize("file", ["/dev/zero", "/etc/passwd", "../outside.mot", "recording.mot"])
+@pytest.mark.parametrize("field", ["file", "mapping"])
+def test_recording_is_followed_inside_the_folder_only(folder, tmp_path, file, field):
+    (tmp_path / "outside.mot").write_text("")
+    (folder / (RECORDING + ".mot")).symlink_to(tmp_path / "outside.mot")
+    text = (folder / SCENARIO).read_text()
+    assert f"{field}: ''" in text
+    (folder / SCENARIO).write_text(text.replace(f"{field}: ''", f"{field}: {file}"))
+    assert "leads out of" in refusal(read, folder)
+
+
+def test_results_are_written_inside_the_folder_only(folder, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for name in ("plots", "csv"):
+        (folder / name).symlink_to(elsewhere)
+    run = Run.open(folder)
+    assert "leads out of" in refusal(write_plots, run)
+    assert "leads out of" in refusal(export_run, run, "csv")
+    assert list(elsewhere.iterdir()) == []
+
+
+def test_replay_is_read_from_the_folder_only(folder, tmp_path):
+    (tmp_path / "page.html").write_text("x")
+    (folder / REPLAY).symlink_to(tmp_path / "page.html")
+    assert "leads out of" in refusal(lambda: Run.open(folder).replay)
+
+
+# Values that are allowed and make no sense.
+
+
+@pytest.fixture
+def walk_of(walk, tmp_path):
+    """A run of several strides, whose signals are changed."""
+
+    def make(change):
+        signals = walk()
+        zero = np.zeros(signals.num_rows)
+        for name in sorted(required_columns(physics=True).difference(signals.column_names)):
+            signals = signals.append_column(name, [zero])
+        scenario = load_scenario("thesis", {"balance.support.enabled": "false"})
+        return Outcome(scenario, change(signals), "completed", wall_time=1.0).write(tmp_path, "walk")
+
+    return make
+
+
+def absurd(seed):
+    """Replace random columns by constants, noise or spikes up to the largest value."""
+
+    def change(signals):
+        random = np.random.default_rng(seed)
+        names = [name for name in signals.column_names if name != TIME and "quaternion" not in name]
+        for name in random.choice(names, random.integers(1, 40), replace=False):
+            size = 10.0 ** random.integers(-300, 10)
+            noise = random.uniform(-1, 1, signals.num_rows)
+            values = [noise, np.ones(signals.num_rows), np.where(noise > 0.99, 1.0, 0.0), -np.abs(noise)]
+            signals = replaced(signals, str(name), 0.99 * size * values[random.integers(4)])
+        return signals
+
+    return change
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_absurd_values_are_reported_drawn_and_exported_or_refused(walk_of, seed):
+    run = walk_of(absurd(seed))
+    plot = list(PLOTS)[seed % len(PLOTS)]
+    uses = [lambda: to_json(compare_run(run)), lambda: write_plots(run, [plot])]
+    uses += [lambda form=form: export_run(run, form) for form in ("csv", "mat", "opensim")]
+    for use in uses:
+        try:
+            use()
+        except ParameterError as error:
+            assert str(error).isprintable()
