@@ -58,15 +58,16 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     old, new = run.signals, again.signals
     other = sorted(set(old.column_names) ^ set(new.column_names))
     if other:
-        notes.append(f"signals that only one of them has: {', '.join(other)}")
+        # Measures need the signals of this version.
+        return Reproduction(False, False, (*notes, f"signals that only one of them has: {', '.join(other)}"))
     if old.num_rows != new.num_rows:
         notes.append(f"{new.num_rows} rows where there were {old.num_rows}")
     rows = min(old.num_rows, new.num_rows)
     differ = {}
-    for name in (name for name in old.column_names if name in new.column_names):
-        a, b = old[name].to_numpy()[:rows], new[name].to_numpy()[:rows]
-        if not np.array_equal(a, b, equal_nan=True):
-            differ[name] = int(np.flatnonzero(~((a == b) | (np.isnan(a) & np.isnan(b))))[0])
+    for name in old.column_names:
+        unequal = np.flatnonzero(old[name].to_numpy()[:rows] != new[name].to_numpy()[:rows])
+        if unequal.size:
+            differ[name] = int(unequal[0])
     if differ:
         first = min(differ, key=lambda name: differ[name])
         notes.append(f"{len(differ)} signals differ, first {first} at {run.time[differ[first]]:g} s")
@@ -78,7 +79,7 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
         if not _agree(value, new_measures.get(name))
     ]
     notes.extend(apart[:10])
-    bits = not differ and not other and old.num_rows == new.num_rows
+    bits = not differ and old.num_rows == new.num_rows
     return Reproduction(bits, bits or not apart, tuple(notes))
 
 

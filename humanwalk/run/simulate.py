@@ -126,9 +126,8 @@ def simulate(
             on_progress(simulated)
         now = time.perf_counter()
         if on_checkpoint is not None and now - last_checkpoint >= checkpoint_period:
-            on_checkpoint(
-                Outcome(scenario, before_runaway(recorder.table(simulator.get_context())), "unfinished", now - started)
-            )
+            signals = before_runaway(recorder.table(simulator.get_context()))
+            on_checkpoint(Outcome(scenario, signals, "unfinished", now - started))
             last_checkpoint = time.perf_counter()
 
     monitor = Monitor(prepared.watched, on_progress=look)

@@ -12,7 +12,7 @@ import pytest
 from humanwalk.exchange import export_run
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import RECORDING, REPLAY, SCENARIO, SIGNALS, SUMMARY, Run
+from humanwalk.run.folder import REPLAY, SCENARIO, SIGNALS, SUMMARY, Run
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.provenance import signals_hash
 from humanwalk.run.simulate import simulate
@@ -276,14 +276,13 @@ def test_what_is_no_regular_file_is_refused_at_once(folder, name, kind):
     refusal(read, folder)
 
 
-@pytest.mark.parametrize("file", ["/dev/zero", "/etc/passwd", "../outside.mot", "recording.mot"])
-@pytest.mark.parametrize("field", ["file", "mapping"])
+@pytest.mark.parametrize("file", ["/dev/zero", "/etc/passwd", "../outside.mot", "linked.mot"])
+@pytest.mark.parametrize("field", ["angles", "mapping"])
 def test_recording_is_followed_inside_the_folder_only(folder, tmp_path, file, field):
     (tmp_path / "outside.mot").write_text("")
-    (folder / (RECORDING + ".mot")).symlink_to(tmp_path / "outside.mot")
-    text = (folder / SCENARIO).read_text()
-    assert f"{field}: ''" in text
-    (folder / SCENARIO).write_text(text.replace(f"{field}: ''", f"{field}: {file}"))
+    (folder / "linked.mot").symlink_to(tmp_path / "outside.mot")
+    recorded = json.dumps({"angles": "own.mot"} | {field: file})
+    (folder / SCENARIO).write_text(f"controller: {{recorded: {recorded}}}")
     assert "leads out of" in refusal(read, folder)
 
 
@@ -316,7 +315,7 @@ def walk_of(walk, tmp_path):
         zero = np.zeros(signals.num_rows)
         for name in sorted(required_columns(physics=True).difference(signals.column_names)):
             signals = signals.append_column(name, [zero])
-        scenario = load_scenario("thesis", {"balance.support.enabled": "false"})
+        scenario = load_scenario("thesis", {"controller.thesis.balance.support.enabled": "false"})
         return Outcome(scenario, change(signals), "completed", wall_time=1.0).write(tmp_path, "walk")
 
     return make

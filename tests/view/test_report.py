@@ -39,7 +39,7 @@ def make_run(walk, tmp_path):
         zero = np.zeros(signals.num_rows)
         for name in sorted(required_columns(physics=True).difference(signals.column_names)):
             signals = signals.append_column(name, [zero])
-        scenario = load_scenario("thesis", {"description": "A <b>walk</b>", "balance.support.enabled": "false"})
+        scenario = load_scenario("thesis", {"description": "A <b>walk</b>"})
         return Outcome(scenario, signals, end, wall_time=1.0).write(tmp_path, "walk")
 
     return make
