@@ -12,8 +12,7 @@ from pydrake.multibody.tree import JointActuatorIndex
 from humanwalk.body.joint_map import JointMap
 from humanwalk.choices.controller import Command
 from humanwalk.choices.world import World
-from humanwalk.control.pd_control import PdLaw
-from humanwalk.control.pd_laws import PD_LAWS, install_gains
+from humanwalk.control.pd_control import PD_LAWS, PdLaw, install_gains
 from humanwalk.numerics import Array
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 

@@ -12,7 +12,7 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.choices.start import StartParameters
-from humanwalk.control.pd_laws import StepImpedance
+from humanwalk.control.pd_control import StepImpedance
 from humanwalk.numerics import Array
 from humanwalk.terrain import Terrain
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydrake.common.eigen_geometry import AngleAxis, Quaternion
 
-from humanwalk.control.pd_laws import StepImpedance, linear_update
+from humanwalk.control.pd_control import StepImpedance, linear_update
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import quantity

@@ -8,8 +8,7 @@ from pydrake.systems.framework import BasicVector, Context, DependencyTicket, In
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.control.hermite import hermite
-from humanwalk.control.pd_control import PdLaw, pd_torque
-from humanwalk.control.pd_laws import PD_LAWS, require_stable
+from humanwalk.control.pd_control import PD_LAWS, PdLaw, pd_torque, require_stable
 from humanwalk.numerics import Array
 from humanwalk.systems.signal import Signal
 

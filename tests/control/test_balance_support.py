@@ -1,4 +1,4 @@
-"""Assumed balance: a linear spring-damper between the pelvis and its reference."""
+"""Balance support: a linear spring-damper between the pelvis and its reference."""
 
 from dataclasses import replace
 from functools import partial
@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from humanwalk.body.joint_map import base_first_mass_matrix
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step, support_wrench
 from humanwalk.control.joint_gains import JointGains, joint_gains
-from humanwalk.control.pd_laws import PD_LAWS
+from humanwalk.control.pd_control import PD_LAWS
 
 K_ROTATION, K, D_ROTATION, D = 5000.0, 30000.0, 300.0, 2500.0
 SUPPORT = BalanceSupportParameters(
@@ -35,7 +35,7 @@ small = st.floats(-1e-4, 1e-4)
 
 
 def displaced(error):
-    """The reference turned about W's axes by error[:3] and moved by error[3:]."""
+    """The reference rotated about the axes of W by error[:3] and translated by error[3:]."""
     turn = RotationMatrix(RollPitchYaw(error[:3]))
     return RigidTransform(turn @ REFERENCE.rotation(), REFERENCE.translation() + error[3:])
 
@@ -98,7 +98,7 @@ def test_the_wrench_does_not_depend_on_the_frame(X, X_reference, V, V_reference,
 
 @pytest.mark.parametrize("axis", range(6))
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_each_displacement_is_pushed_back_along_itself_alone(axis, sign):
+def test_each_displacement_causes_an_opposite_wrench_along_its_own_axis(axis, sign):
     error = sign * 0.01 * np.eye(6)[axis]
     stiffness = K_ROTATION if axis < 3 else K
     wrench = wrench_at(displaced(error), ZERO, ZERO)
@@ -106,7 +106,7 @@ def test_each_displacement_is_pushed_back_along_itself_alone(axis, sign):
 
 
 @pytest.mark.parametrize("axis", range(6))
-def test_each_velocity_error_is_braked_along_itself_alone(axis):
+def test_each_velocity_error_causes_an_opposite_wrench_along_its_own_axis(axis):
     V_reference = np.arange(6.0)
     error = 0.3 * np.eye(6)[axis]
     damping = D_ROTATION if axis < 3 else D
@@ -124,13 +124,13 @@ def test_small_errors_add(a, b):
     np.testing.assert_allclose(wrench(a + b), wrench(a) + wrench(b), atol=4 * K_ROTATION * 1e-8)
 
 
-def test_the_longest_way_round_is_not_taken():
-    """A pelvis turned by 350 degrees is 10 degrees off, on the other side."""
+def test_the_rotation_error_is_the_shorter_way():
+    """A rotation by 350 degrees is one of -10 degrees."""
     wrench = wrench_at(displaced(np.array([0, 0, np.deg2rad(350), 0, 0, 0])), ZERO, ZERO)
     np.testing.assert_allclose(wrench[2], K_ROTATION * np.deg2rad(10), rtol=1e-9)
 
 
-def test_the_two_quaternions_of_an_orientation_are_one_and_a_length_a_little_off_does_no_harm():
+def test_sign_and_length_of_the_quaternion_do_not_matter():
     X = displaced(np.array([0.3, -0.2, 0.1, 0.0, 0.1, 0.0]))
     q, reference = floating_base(X), np.concatenate((floating_base(REFERENCE), ZERO))
     expected = support_wrench(q, ZERO, reference, SUPPORT)
@@ -144,7 +144,7 @@ def test_its_damping_for_the_reference_body_is_as_documented():
     assert p.damping / (2 * np.sqrt(p.stiffness * mass)) == pytest.approx(0.88, abs=0.005)
 
 
-def test_a_heavier_taller_body_is_supported_alike():
+def test_the_support_scales_with_the_body():
     """Forces go with the mass, torques with mass times length squared, as the body's inertias do."""
     bigger = SUPPORT.scaled(2.0, 1.5)
     shift, turn = np.array([0, 0, 0, 0.01, 0, 0]), np.array([0, 0.01, 0, 0, 0, 0])
@@ -165,7 +165,7 @@ def test_the_default_support_is_stable_at_two_milliseconds_with_a_margin(plant, 
 
 
 @given(mass=st.floats(1.0, 100.0), damping=st.floats(1e3, 1e5))
-def test_a_damped_block_is_stable_as_euler_says(mass, damping):
+def test_the_stable_step_of_a_damped_block_is_that_of_explicit_euler(mass, damping):
     """Without joints or stiffness each direction is v' = (1 - h d / m) v."""
     support = BalanceSupportParameters(stiffness=0.0, damping=damping, rotational_stiffness=0.0, rotational_damping=0.0)
     step = largest_support_step(

@@ -13,7 +13,7 @@ shares = st.floats(0.0, 1.0)
 
 
 @given(x0=states, x1=states)
-def test_it_has_both_states_at_their_times(x0, x1):
+def test_it_passes_through_both_samples(x0, x1):
     np.testing.assert_allclose(hermite(1.0, 1.0, x0, 1.5, x1), x0, atol=1e-12)
     np.testing.assert_allclose(hermite(1.5, 1.0, x0, 1.5, x1), x1, atol=1e-12)
 
@@ -27,7 +27,7 @@ def test_velocity_is_the_derivative_of_position(x0, x1, share):
 
 
 @given(coefficients=st.tuples(*[numbers] * 4), share=shares)
-def test_a_cubic_is_met_exactly(coefficients, share):
+def test_a_cubic_is_reproduced(coefficients, share):
     polynomial = np.polynomial.Polynomial(coefficients)
 
     def state(t):
@@ -39,7 +39,7 @@ def test_a_cubic_is_met_exactly(coefficients, share):
 
 
 @given(x0=states, x1=states, share=st.floats(0.001, 1.0))
-def test_it_moves_straight_on_before_the_first_sample_and_after_the_second(x0, x1, share):
+def test_outside_the_samples_it_is_a_first_order_hold(x0, x1, share):
     (q0, v0), (q1, v1) = np.split(x0, 2), np.split(x1, 2)
     np.testing.assert_allclose(hermite(1.0 - share, 1.0, x0, 1.5, x1), [*(q0 - share * v0), *v0], atol=1e-12)
     np.testing.assert_allclose(hermite(1.5 + share, 1.0, x0, 1.5, x1), [*(q1 + share * v1), *v1], atol=1e-12)

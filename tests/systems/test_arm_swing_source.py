@@ -58,7 +58,7 @@ def test_angles_stay_within_the_joint_ranges(source, joints, t):
     assert np.all((joints.lower <= angles) & (angles <= joints.upper))
 
 
-def test_an_arm_is_furthest_back_when_the_foot_of_its_side_lands(source, joints, gait):
+def test_an_arm_is_furthest_back_at_touchdown_of_its_side(source, joints, gait):
     touchdown = next(s.touchdown for s in gait.footsteps(6.0) if s.side == "Right" and s.touchdown > 2.0)
     right, left = (joints.names.index(arm.shoulder_flexion) for arm in ARMS.values())
     angles, rates = posture_of(source, touchdown)

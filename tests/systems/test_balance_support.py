@@ -1,4 +1,4 @@
-"""Assumed balance as a system: its wrench is the force on the pelvis, which gives way by force over stiffness."""
+"""Balance support as a system: the wrench acts on the pelvis, which yields by force over stiffness."""
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_the_generalized_force_is_the_wrench_on_the_pelvis_at_its_origin(support
     np.testing.assert_allclose(support.GetOutputPort("generalized_force").Eval(context), J.T @ wrench, atol=1e-9)
 
 
-def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
+def test_the_length_of_the_quaternion_does_not_matter(support, plant):
     context = context_of(support, plant, RigidTransform([1.1, 0.4, 1.0]), np.zeros(6))
     expected = support.GetOutputPort("wrench").Eval(context)
     state = support.GetInputPort("state").Eval(context)
@@ -95,8 +95,8 @@ def test_a_quaternion_a_little_off_unit_length_does_no_harm(support, plant):
     np.testing.assert_allclose(support.GetOutputPort("wrench").Eval(context), expected, atol=1e-6)
 
 
-def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
-    """A block of the body's mass as the pelvis, its center of mass off its origin, so that it turns as well."""
+def test_in_a_plant_the_pelvis_yields_by_weight_over_stiffness():
+    """The pelvis is a block of the body's mass; its center of mass is off its origin, so that it also rotates."""
     mass, arm = 70.0, 0.02
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, 0.001)
@@ -116,7 +116,7 @@ def test_in_a_plant_the_pelvis_gives_way_by_weight_over_stiffness():
     X_WP = plant.EvalBodyPoseInWorld(plant.GetMyContextFromRoot(simulator.get_context()), pelvis)
     weight = mass * 9.81
     np.testing.assert_allclose(X_WP.translation(), [0, 0, -weight / PARAMETERS.stiffness], atol=1e-7)
-    # The weight acts in front of the origin: nose down, positive about y.
+    # The weight acts in front of the origin: pitch down, positive about y.
     pitch = weight * arm / PARAMETERS.rotational_stiffness
     np.testing.assert_allclose(X_WP.rotation().matrix(), RotationMatrix.MakeYRotation(pitch).matrix(), atol=1e-6)
 

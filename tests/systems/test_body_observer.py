@@ -46,7 +46,7 @@ def test_ports(observer, plant):
         assert (port.get_name(), port.size()) == (name, 6)
 
 
-def test_neutral_standing_is_the_skeletons(observed, plant, skeleton):
+def test_neutral_standing_agrees_with_the_skeleton(observed, plant, skeleton):
     soles, com = observed(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
     width = skeleton.hip_half_width
     np.testing.assert_allclose(soles, [0, -width, 0, 0, width, 0], atol=1e-9)
@@ -72,7 +72,7 @@ def _at(plant, q):
 
 @given(rng=seeds, shift=st.tuples(*[st.floats(-5, 5)] * 3))
 @settings(max_examples=25)
-def test_a_body_that_is_carried_elsewhere_carries_its_points(observed, plant, rng, shift):
+def test_a_translation_of_the_body_translates_its_points(observed, plant, rng, shift):
     q, v = random_state(plant, rng)
     moved = q.copy()
     moved[4:7] += shift

@@ -1,4 +1,4 @@
-"""Gait spline source: poses in the pelvis frame, their exact rates, and stance feet that stand still in the world."""
+"""Gait spline source: poses in the pelvis frame, their exact rates, and stance feet at rest in the world."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def source(gait, skeleton):
 
 @pytest.fixture(scope="module")
 def at(source):
-    """Every output by name at a time [s], and poses and velocities out of pelvis_reference and sole_targets."""
+    """Every output by name at a time [s], and poses and velocities of pelvis_reference and sole_targets."""
     context = source.CreateDefaultContext()
 
     def outputs(t):
@@ -73,7 +73,7 @@ def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at, t):
 
 @settings(max_examples=200)
 @given(t=times)
-def test_a_sole_in_stance_stands_still_and_level_in_the_world(at, gait, t):
+def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, gait, t):
     here = at(t)
     for i, side in enumerate(SIDES):
         X_WS = here["X_WP"] @ here[f"X_P{side[0]}s"]
@@ -122,7 +122,7 @@ def test_pelvis_walks_upright_along_x(at, gait):
 
 
 @given(t=times, preview=st.floats(0.0, 0.05))
-def test_a_preview_is_of_the_soles_alone(source, gait, skeleton, preview, t):
+def test_the_preview_applies_to_the_soles_only(source, gait, skeleton, preview, t):
     ahead = GaitSplineSource(gait, skeleton, preview)
 
     def value(system, name, time):

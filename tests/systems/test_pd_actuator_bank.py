@@ -1,4 +1,4 @@
-"""PD actuator bank: one law for 42 joints, held between samples, stable or refused."""
+"""PD actuator bank: one law for 42 joints, interpolated between samples, unstable steps rejected."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.hermite import hermite
 from humanwalk.control.joint_gains import JointGains, joint_gains
-from humanwalk.control.pd_control import pd_torque
-from humanwalk.control.pd_laws import install_gains
+from humanwalk.control.pd_control import install_gains, pd_torque
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
@@ -29,7 +28,7 @@ def gains(plant):
 
 
 def floating_human(time_step, gains, limited=True, law="implicit"):
-    """The human in a diagram, in zero gravity and without ground; gains installed where given."""
+    """The human in a diagram, in zero gravity and without ground; gains installed if given."""
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, time_step)
     add_human(plant, Subject())
@@ -63,7 +62,7 @@ def implicit(discrete_plant, gains):
 
 @pytest.fixture(scope="module")
 def explicit(plant, gains):
-    """The explicit law for a continuous plant, which has no step to be unstable at."""
+    """The explicit law for a continuous plant, which has no time step."""
     return PdActuatorBank(plant, *gains, law="explicit")
 
 
@@ -143,14 +142,14 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explici
         assert actual[i] == pytest.approx(min(max(tau, -limit), limit), rel=1e-9, abs=1e-9), name
 
 
-def test_without_feedforward_there_is_none(explicit, plant):
+def test_feedforward_defaults_to_zero(explicit, plant):
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=np.zeros(2 * N), state=state)
     np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", ["implicit", "explicit"])
-def test_joints_whose_law_reaches_the_effort_limit_are_reported(implicit, explicit, joints, gains, law):
+def test_joints_at_the_effort_limit_are_reported(implicit, explicit, joints, gains, law):
     bank, torque = {"implicit": implicit, "explicit": explicit}[law], 0.5 * joints.effort_limits
     torque[3], torque[7] = 1.01 * joints.effort_limits[3], -1.01 * joints.effort_limits[7]
     desired = np.concatenate((torque / gains[0], np.zeros(N)))
@@ -170,7 +169,7 @@ def test_the_implicit_law_passes_the_feedforward(implicit):
 
 @settings(max_examples=20)
 @given(rng=seeds)
-def test_the_semi_implicit_law_leaves_the_damping_to_the_plant(rng):
+def test_semi_implicit_actuation_compensates_the_damping_of_the_plant(rng):
     """Torque and the plant's damping together are the law, also where a joint is at its limit."""
     kp, kd = np.full(N, 100.0), np.linspace(1.0, 20.0, N)
     limits = np.full(N, 50.0)
@@ -191,7 +190,7 @@ def test_the_semi_implicit_law_leaves_the_damping_to_the_plant(rng):
     np.testing.assert_array_equal(saturated, (np.abs(law) >= limits).astype(float))
 
 
-def test_the_semi_implicit_law_adds_its_damping_to_the_joints_own(gains):
+def test_the_semi_implicit_law_adds_its_damping_to_that_of_the_joints(gains):
     _, bare = floating_human(0.001, None)
     _, plant = floating_human(0.001, gains, law="semi_implicit")
     for i in range(N):
@@ -218,7 +217,7 @@ def test_the_semi_implicit_law_is_stable_with_the_thesis_gains(gains, time_step)
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
-def test_the_torque_shown_is_what_moved_the_body_in_the_step_that_just_ended(gains, law):
+def test_the_torque_output_is_the_one_that_acted_in_the_last_step(gains, law):
     """From rest, M v' = tau h less the joints' own damping; at an impact any other moment's v would be far off."""
     h = 0.001
     _, bare = floating_human(h, None)
@@ -251,7 +250,7 @@ def test_the_torque_shown_is_what_moved_the_body_in_the_step_that_just_ended(gai
 
 
 @given(rng=seeds, age=st.floats(0.0, 0.02))
-def test_between_samples_angles_move_on_with_their_rates(implicit, rng, age):
+def test_after_the_sample_the_desired_state_is_held_to_first_order(implicit, rng, age):
     q, v = rng.normal(size=(2, N))
     context = context_with(implicit, desired_state=np.concatenate((q, v)), sample_time=[1.0])
     context.SetTime(1.0 + age)
@@ -263,7 +262,7 @@ def test_between_samples_angles_move_on_with_their_rates(implicit, rng, age):
 
 
 @given(rng=seeds, share=st.floats(-0.5, 1.5))
-def test_from_the_sample_before_to_the_next_goes_their_cubic(implicit, rng, share):
+def test_between_samples_the_desired_state_is_their_cubic(implicit, rng, share):
     x0, x1 = rng.normal(size=(2, 2 * N))
     samples = {"previous_state": x0, "previous_time": [1.0], "desired_state": x1, "sample_time": [1.01]}
     context, t = context_with(implicit, **samples), 1.0 + 0.01 * share
@@ -274,7 +273,7 @@ def test_from_the_sample_before_to_the_next_goes_their_cubic(implicit, rng, shar
 
 @given(rng=seeds, age=st.floats(-0.01, 0.02))
 def test_the_law_follows_the_desired_state_between_samples(explicit, plant, joints, gains, rng, age):
-    """Both with and without a sample before, and with a feed-forward that changes."""
+    """With and without a previous sample, and with a feedforward that changes."""
     kp, kd = gains
     state, feedforward = 1e-4 * rng.normal(size=plant.num_multibody_states()), rng.normal(size=N)
     samples = {"desired_state": 1e-4 * rng.normal(size=2 * N), "sample_time": [1.0]}
@@ -311,7 +310,7 @@ def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
 
 
 def perturbed_run(time_step, gains, law, steps, unchecked=False):
-    """Largest joint angle at the end of a run that begins 0.01 rad off, without limits."""
+    """Largest joint angle at the end of a run from 0.01 rad, without limits."""
     builder, plant = floating_human(time_step, gains, limited=False, law=law)
     joints = JointMap.of(plant)
     if unchecked:
@@ -340,7 +339,7 @@ def perturbed_run(time_step, gains, law, steps, unchecked=False):
 
 
 def named_step(kp, kd):
-    """The step that a refusal names."""
+    """The largest step that the error message names."""
     _, plant = floating_human(0.01, None)
     with pytest.raises(ParameterError, match=r"explicit is unstable at time_step 0\.01 s") as refusal:
         PdActuatorBank(plant, kp, kd, law="explicit")
@@ -357,7 +356,7 @@ def stable_step(gains):
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.7, 0.4, 0.1])
-def test_the_step_that_a_refusal_names_is_accepted(gains, scale):
+def test_the_step_named_by_the_error_is_accepted(gains, scale):
     kp, kd = scale * gains[0], scale * gains[1]
     step = named_step(kp, kd)
     PdActuatorBank(floating_human(step, None)[1], kp, kd, law="explicit")
@@ -405,7 +404,7 @@ def settled_state(builder, plant, time_step, duration=3.0):
 
 
 def settled_by_drake(time_step):
-    """Where Drake's own PD brings the joint from a desired state that is constant: q_d + kd / kp v_d."""
+    """Equilibrium of Drake's PD at a constant desired state: q_d + kd / kp v_d."""
     builder, plant, instance = one_joint(time_step)
     desired = builder.AddSystem(ConstantVectorSource([Q_D, V_D]))
     builder.Connect(desired.get_output_port(), plant.get_desired_state_input_port(instance))
@@ -429,7 +428,7 @@ def test_drake_discrete_desired_velocity_sign():
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="Drake 1.58: CENIC subtracts the desired velocity; when this passes, the bank need not fold it any more",
+    reason="Drake 1.58: CENIC subtracts the desired velocity; when this passes, remove the workaround in the bank",
 )
 def test_drake_cenic_desired_velocity_sign():
     assert settled_by_drake(0.0) == pytest.approx(Q_D + KD / KP * V_D, abs=1e-4)
@@ -447,7 +446,7 @@ def test_a_joint_without_stiffness_reaches_its_desired_rate(time_step):
     assert v == pytest.approx(V_D, abs=1e-3)
 
 
-def test_folded_rates_are_torque_and_leave_the_records_alone(plant, gains):
+def test_for_a_continuous_plant_desired_rates_are_torque_and_recorded_unchanged(plant, gains):
     bank = PdActuatorBank(plant, *gains)
     desired, tau = np.arange(2.0 * N), np.ones(N)
     context = context_with(bank, desired_state=desired, sample_time=[0.0], feedforward=tau)

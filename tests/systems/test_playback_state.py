@@ -1,4 +1,4 @@
-"""PlaybackState alone: pelvis and joints land where the plant's state has them."""
+"""Playback state: pelvis and joints at their places in the plant's state."""
 
 import numpy as np
 import pytest

@@ -40,7 +40,7 @@ def test_desired_state_is_the_cubic_through_the_samples(t):
     np.testing.assert_allclose(interpolator.GetOutputPort("desired_state").Eval(context), expected, atol=1e-12)
 
 
-def test_time_moves_it():
+def test_it_passes_through_both_samples():
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, 0.10)
     port = interpolator.GetOutputPort("desired_state")
@@ -49,7 +49,7 @@ def test_time_moves_it():
     np.testing.assert_allclose(port.Eval(context), X1, atol=1e-12)
 
 
-def test_new_samples_make_a_new_piece():
+def test_a_new_sample_changes_the_output():
     interpolator = PostureInterpolator(N)
     context = context_at(interpolator, 0.12)
     port = interpolator.GetOutputPort("desired_state")

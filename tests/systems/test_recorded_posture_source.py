@@ -41,7 +41,7 @@ def test_ports_are_those_of_the_docstring():
 
 
 @pytest.mark.parametrize("ease_in", [0.0, 0.3])
-def test_samples_are_met_after_the_ease_in(ease_in):
+def test_the_motion_passes_through_its_samples_after_the_ease_in(ease_in):
     recorded = motion(ease_in)
     source = RecordedPostureSource(recorded)
     for row in (20, 33, 50):
@@ -75,7 +75,7 @@ def test_motion_starts_and_ends_at_rest():
 
 
 @pytest.mark.parametrize("period", [0.005, 0.01, 0.02, 0.04])
-def test_sampling_rate_of_the_recording_changes_little(period):
+def test_the_sampling_rate_hardly_matters(period):
     """Resampling: the curve between samples is the recorded motion, whatever the rate."""
     source = RecordedPostureSource(motion(ease_in=0.0, period=period))
     for time in (0.1234, 0.5, 0.777):
