@@ -111,8 +111,10 @@ class Motion:
 
 def motion(variant: Variant, duration: float) -> Motion:
     """Simulate without recording and keep force, angles and centre of mass of every step that is taken."""
-    prepared = prepare(load_scenario(variant.scenario, variant.overrides), record=False)
-    walker, joints, monitor = prepared.walker, JointMap.of(prepared.plant), Monitor(prepared.plant)
+    scenario = load_scenario(variant.scenario, variant.overrides)
+    prepared = prepare(scenario, record=False)
+    walker, joints = prepared.walker, JointMap.of(prepared.plant)
+    monitor = Monitor(prepared.plant, scenario.terrain)
     ports = [walker.GetOutputPort(name) for name in ("foot_forces", "state", "com")]
     kept: list[tuple[float, Array, Array, Array]] = []
 

@@ -33,6 +33,7 @@ from humanwalk.run.monitor import Monitor
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.systems.push_source import PushSource
+from humanwalk.terrain import Plane
 from humanwalk.walking.command import CommandProfile
 from humanwalk.walking.commanded_path import Place
 from humanwalk.walking.push import Push
@@ -123,7 +124,7 @@ def pushed(walker: Diagram, context: Context, push: Push) -> dict[str, Any]:
     assert isinstance(plant, MultibodyPlant)
     source.set_pushes(source.GetMyMutableContextFromRoot(context), [push])
     simulator = Simulator(walker, context)
-    monitor = Monitor(plant)
+    monitor = Monitor(plant, Plane())
     simulator.set_monitor(monitor)
     try:
         simulator.Initialize(InitializeParams(suppress_initialization_events=True))

@@ -16,7 +16,7 @@ class TimedWalk:
     def __init__(self, scenario: Scenario, record: bool = True) -> None:
         """Make and initialise it, with or without recording."""
         self.prepared: Prepared = prepare(scenario, record=record)
-        self._monitor = Monitor(self.prepared.watched)
+        self._monitor = Monitor(self.prepared.watched, scenario.terrain)
         self.prepared.simulator.Initialize()
 
     @property

@@ -1,87 +1,133 @@
-"""Ends a simulation that makes no more sense: a fall, a number that is none, a person who pressed Ctrl-C."""
+"""Ends a simulation early: after a fall, at a value that is not finite, or at a signal such as Ctrl-C."""
 
 import math
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, EventStatus, System
 
+from humanwalk.body.limbs import PELVIS
+from humanwalk.terrain import Terrain
+
 FALL_HEIGHT_SHARE = 0.6
-"""Share of its height at the start below which the pelvis counts as fallen."""
+"""Share of its initial height above the terrain below which the pelvis counts as fallen."""
 
 CHECK_PERIOD = 0.01
-"""Simulated time between two looks at the state [s]; looking is not free."""
+"""Simulated time between two checks of the state [s]; a check takes time."""
+
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""Ctrl-C, the request of a system or a scheduler to end, and a terminal that was closed."""
 
 
 @dataclass
 class Monitor:
-    """Watches a plant in a root diagram while its simulator advances.
+    """Checks a plant in a root diagram while its simulator advances.
 
     Attributes:
-        watched: the plant; where there is none, the diagram that is simulated, which cannot fall.
-        on_progress: called with the simulated time [s] at every look.
-        reason: why the simulation was ended: "fell", "not a number", "interrupted"; empty while it goes on.
-        interrupted: set from outside to end the simulation at the next look.
+        watched: the plant; without physics the simulated diagram, which cannot fall.
+        terrain: what it walks on.
+        on_progress: called with the simulated time [s] at every check.
+        reason: why the simulation ended: "fell", "not a number", "interrupted"; empty before that.
+        interrupted: set from outside to end the simulation at the next check.
     """
 
     watched: System
+    terrain: Terrain
     on_progress: Callable[[float], None] = lambda time: None
     reason: str = ""
     interrupted: bool = False
-    _next_look: float = field(default=0.0, repr=False)
+    _next_check: float = field(default=0.0, repr=False)
     _fallen_below: float = field(default=-math.inf, repr=False)
-    _height: int = field(default=0, repr=False)
 
     def __call__(self, root_context: Context) -> EventStatus:
-        """Simulator monitor: look at the state every CHECK_PERIOD."""
+        """Simulator monitor: check the state every CHECK_PERIOD."""
         time = root_context.get_time()
-        if time < self._next_look:
+        if time < self._next_check:
             return EventStatus.DidNothing()
-        # A multiple of the period, to the last bit: where the looks are not at the systems' own times, they add steps.
-        self._next_look = CHECK_PERIOD * (math.floor(time / CHECK_PERIOD + 1e-6) + 1)
-        self.reason = self._body_says(root_context) or ("interrupted" if self.interrupted else "")
+        # An exact multiple of the period: a check beside the systems' own times would add a step.
+        self._next_check = CHECK_PERIOD * (math.floor(time / CHECK_PERIOD + 1e-6) + 1)
+        self.reason = self._failure(root_context) or ("interrupted" if self.interrupted else "")
         if self.reason:
             return EventStatus.ReachedTermination(self.watched, self.reason)
         self.on_progress(time)
         return EventStatus.Succeeded()
 
     def advance(self, simulator: Simulator, until: float) -> None:
-        """Let an initialised simulator go on to a time [s], or until there is a reason to end.
+        """Advance an initialized simulator to a time [s], or until there is a reason to end.
 
-        Quicker than as the simulator's monitor, which would be called after every step.
+        Faster than as the simulator's monitor, which is called after every step.
         """
         context = simulator.get_context()
         self(context)
         while not self.reason and context.get_time() < until:
-            simulator.AdvanceTo(min(self._next_look, until))
+            simulator.AdvanceTo(min(self._next_check, until))
             self(context)
 
-    def _body_says(self, root_context: Context) -> str:
+    def _failure(self, root_context: Context) -> str:
         plant = self.watched
         if not isinstance(plant, MultibodyPlant):
             return ""
-        q = plant.GetPositions(plant.GetMyContextFromRoot(root_context)).tolist()
-        if self._fallen_below == -math.inf:
-            self._height = plant.GetBodyByName("Pelvis").floating_positions_start() + 6
-            self._fallen_below = FALL_HEIGHT_SHARE * q[self._height]
-        if not all(map(math.isfinite, q)):
+        q = plant.GetPositions(plant.GetMyContextFromRoot(root_context))
+        if not np.isfinite(q).all():
             return "not a number"
-        return "fell" if q[self._height] < self._fallen_below else ""
+        place = plant.GetBodyByName(PELVIS).floating_positions_start() + 4
+        x, y, z = q[place : place + 3]
+        height = z - float(self.terrain.height(np.array((x, y))))
+        if self._fallen_below == -math.inf:
+            self._fallen_below = FALL_HEIGHT_SHARE * height
+        return "fell" if height < self._fallen_below else ""
 
     @contextmanager
-    def stop_on_interrupt(self) -> Iterator[None]:
-        """Within the block, Ctrl-C ends the simulation cleanly; a second one does what it always did."""
+    def stop_on_signal(self) -> Iterator[None]:
+        """Within the block, the first of STOP_SIGNALS ends the simulation at the next check."""
 
-        def interrupt(signum: int, frame: object) -> None:
+        def stop(number: int) -> None:
             self.interrupted = True
-            signal.signal(signal.SIGINT, previous)
 
-        previous = signal.signal(signal.SIGINT, interrupt)
-        try:
+        with first_signal(stop):
             yield
-        finally:
-            signal.signal(signal.SIGINT, previous)
+
+
+@contextmanager
+def held_signals() -> Iterator[None]:
+    """Within the block, the first of STOP_SIGNALS waits for the end of the block."""
+    received: list[int] = []
+    with first_signal(received.append):
+        yield
+    for number in received:
+        os.kill(os.getpid(), number)
+
+
+@contextmanager
+def first_signal(handle: Callable[[int], None]) -> Iterator[None]:
+    """Within the block, the first of STOP_SIGNALS calls `handle` with its number; a second one acts as before.
+
+    A signal that the process ignores, as SIGHUP under nohup, stays ignored. Outside of the main thread, which alone
+    may handle signals, nothing changes.
+    """
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+    before = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+    if threading.current_thread() is not threading.main_thread():
+        before = {}
+
+    def restore() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    def handle_once(number: int, frame: object) -> None:
+        restore()
+        handle(number)
+
+    for number in before:
+        signal.signal(number, handle_once)
+    try:
+        yield
+    finally:
+        restore()

@@ -14,13 +14,12 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
 from humanwalk.scenario import Scenario
-from humanwalk.terrain import Plane
 
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
@@ -73,7 +72,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
             walker.GetOutputPort("query_object"),
             meshcat,
             scenario.recording.frame_rate,
-            Plane(),
+            scenario.terrain,
             walker.GetOutputPort("foot_forces") if walker.HasOutputPort("foot_forces") else None,
         )
     diagram = builder.Build()
@@ -130,8 +129,8 @@ def simulate(
             on_checkpoint(Outcome(scenario, signals, "unfinished", now - started))
             last_checkpoint = time.perf_counter()
 
-    monitor = Monitor(prepared.watched, on_progress=look)
-    with monitor.stop_on_interrupt():
+    monitor = Monitor(prepared.watched, scenario.terrain, on_progress=look)
+    with monitor.stop_on_signal():
         try:
             simulator.Initialize()
             monitor.advance(simulator, scenario.duration)
@@ -139,11 +138,11 @@ def simulate(
         except ParameterError:
             raise
         except (RuntimeError, SystemExit, ValueError, ArithmeticError) as error:
-            # Drake's solvers throw, its checks exit and NumPy's refuse when the state has run away; the record until
+            # When the state has run away, Drake's solvers throw, its checks exit and NumPy raises; the record until
             # then is kept.
-            end = monitor.reason or f"solver failed: {(str(error) or repr(error)).splitlines()[0]}"
-    wall_time = time.perf_counter() - started
-    signals = before_runaway(recorder.table(simulator.get_context()))
+            end = monitor.reason or f"solver failed: {printable((str(error) or repr(error)).splitlines()[0])}"
+        wall_time = time.perf_counter() - started
+        signals = before_runaway(recorder.table(simulator.get_context()))
     if signals.num_rows == 0:
         raise ParameterError(f"simulation: nothing to record, it ended at its start: {end}; change start or actuators")
     return Outcome(scenario, signals, end, wall_time)

@@ -1,7 +1,8 @@
-"""The monitor ends a simulation on a fall, a number that is none, or Ctrl-C, and says which."""
+"""The monitor ends a simulation after a fall, at a value that is not finite, or at a signal, and gives the reason."""
 
 import os
 import signal
+import threading
 
 import numpy as np
 import pytest
@@ -10,10 +11,13 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import EventStatus
 from pydrake.systems.primitives import ConstantVectorSource
 
+from humanwalk.body.limbs import PELVIS
 from humanwalk.body.plant import Subject, add_human
-from humanwalk.run.monitor import CHECK_PERIOD, FALL_HEIGHT_SHARE, Monitor
+from humanwalk.quantity import GRAVITY
+from humanwalk.run.monitor import CHECK_PERIOD, FALL_HEIGHT_SHARE, STOP_SIGNALS, Monitor, held_signals
+from humanwalk.terrain import Plane
 
-GRAVITY = 9.81
+LEVEL = Plane()
 
 
 @pytest.fixture(scope="module")
@@ -25,18 +29,19 @@ def falling_plant():
     return plant
 
 
-def context_at(plant, height: float, time: float = 0.0):
+def context_at(plant, height: float, time: float = 0.0, x: float = 0.0):
     context = plant.CreateDefaultContext()
     state = plant.GetPositionsAndVelocities(context)
-    state[plant.GetBodyByName("Pelvis").floating_positions_start() + 6] = height
-    # By the state itself: Drake's own setter of positions ends the program on a number that is none.
+    place = plant.GetBodyByName(PELVIS).floating_positions_start() + 4
+    state[place], state[place + 2] = x, height
+    # Drake's own setter of positions ends the program on a value that is not finite.
     context.SetDiscreteState(state)
     context.SetTime(time)
     return context
 
 
 def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant):
-    monitor = Monitor(falling_plant)
+    monitor = Monitor(falling_plant, LEVEL)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
     simulator.set_monitor(monitor)
     status = simulator.AdvanceTo(5.0)
@@ -47,7 +52,7 @@ def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant):
 
 
 def test_height_is_measured_from_the_start_and_not_from_the_standing_body(falling_plant):
-    monitor = Monitor(falling_plant)
+    monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 2.0))
     assert monitor(context_at(falling_plant, 1.25, 0.1)).severity() == EventStatus.Severity.kSucceeded
     assert monitor(context_at(falling_plant, 1.15, 0.2)).severity() == EventStatus.Severity.kReachedTermination
@@ -55,7 +60,7 @@ def test_height_is_measured_from_the_start_and_not_from_the_standing_body(fallin
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_number_that_is_none_ends_the_simulation(falling_plant, value):
-    monitor = Monitor(falling_plant)
+    monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 1.0))
     status = monitor(context_at(falling_plant, value, 0.1))
     assert status.severity() == EventStatus.Severity.kReachedTermination
@@ -64,7 +69,7 @@ def test_number_that_is_none_ends_the_simulation(falling_plant, value):
 
 def test_progress_is_told_at_every_look_and_no_more_often(falling_plant):
     times = []
-    monitor = Monitor(falling_plant, on_progress=times.append)
+    monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
     simulator.set_monitor(monitor)
     simulator.AdvanceTo(0.1)
@@ -75,7 +80,7 @@ def test_progress_is_told_at_every_look_and_no_more_often(falling_plant):
 
 def test_it_advances_a_simulator_to_its_time_or_to_the_fall(falling_plant):
     times = []
-    monitor = Monitor(falling_plant, on_progress=times.append)
+    monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
     simulator.Initialize()
     monitor.advance(simulator, 0.035)
@@ -96,37 +101,89 @@ def test_looking_adds_no_steps(falling_plant):
         simulator = Simulator(falling_plant, context_at(falling_plant, 2.0))
         simulator.Initialize()
         if looks:
-            Monitor(falling_plant).advance(simulator, 0.3)
+            Monitor(falling_plant, LEVEL).advance(simulator, 0.3)
         else:
             simulator.AdvanceTo(0.3)
         counts.append(simulator.get_num_steps_taken())
     assert counts[0] == counts[1]
 
 
-def test_interrupt_ends_the_simulation_at_the_next_look(falling_plant):
-    monitor = Monitor(falling_plant)
-    before = signal.getsignal(signal.SIGINT)
-    with monitor.stop_on_interrupt():
+def test_height_is_measured_above_the_terrain_under_the_pelvis(falling_plant):
+    """Uphill a standing walker is higher than at its start; downhill it is lower and has not fallen."""
+    slope = Plane(slope=0.2)
+    for x, has_fallen in ((-5.0, False), (5.0, False)):
+        monitor = Monitor(falling_plant, slope)
+        monitor(context_at(falling_plant, 1.0))
+        monitor(context_at(falling_plant, 1.0 + x * np.tan(0.2), 0.1, x))
+        assert (monitor.reason == "fell") == has_fallen
+    monitor = Monitor(falling_plant, slope)
+    monitor(context_at(falling_plant, 1.0))
+    monitor(context_at(falling_plant, 1.0, 0.1, x=5.0))
+    assert monitor.reason == "fell"
+
+
+@pytest.fixture
+def handlers():
+    """Python's own handlers, and those of before at the end."""
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+    caught = []
+    for number in STOP_SIGNALS:
+        signal.signal(number, lambda number, frame: caught.append(number))
+    yield caught
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("number", STOP_SIGNALS)
+def test_first_signal_ends_the_simulation_at_the_next_check_and_the_second_acts_as_before(
+    falling_plant, handlers, number
+):
+    monitor = Monitor(falling_plant, LEVEL)
+    before = signal.getsignal(number)
+    with monitor.stop_on_signal():
         assert monitor(context_at(falling_plant, 1.0)).severity() == EventStatus.Severity.kSucceeded
-        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), number)
         status = monitor(context_at(falling_plant, 1.0, 1.0))
         assert status.severity() == EventStatus.Severity.kReachedTermination
         assert monitor.reason == "interrupted"
-    assert signal.getsignal(signal.SIGINT) is before
+        assert handlers == []
+        os.kill(os.getpid(), number)
+        assert handlers == [number]
+    assert signal.getsignal(number) is before
 
 
-def test_second_interrupt_does_what_it_always_did(falling_plant):
-    # Whatever a test before has left there.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    monitor = Monitor(falling_plant)
-    with monitor.stop_on_interrupt():
-        os.kill(os.getpid(), signal.SIGINT)
-        with pytest.raises(KeyboardInterrupt):
-            os.kill(os.getpid(), signal.SIGINT)
+def test_signal_that_is_ignored_stays_ignored(falling_plant, handlers):
+    """As SIGHUP under nohup."""
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    monitor = Monitor(falling_plant, LEVEL)
+    with monitor.stop_on_signal():
+        os.kill(os.getpid(), signal.SIGHUP)
+        assert not monitor.interrupted
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+
+
+@pytest.mark.parametrize("number", STOP_SIGNALS)
+def test_held_signal_acts_at_the_end_of_the_block(handlers, number):
+    with held_signals():
+        os.kill(os.getpid(), number)
+        assert handlers == []
+    assert handlers == [number]
+
+
+def test_simulation_in_another_thread_leaves_the_signals_alone(falling_plant, handlers):
+    def simulate():
+        with Monitor(falling_plant, LEVEL).stop_on_signal():
+            seen.append(signal.getsignal(signal.SIGINT))
+
+    seen: list = []
+    thread = threading.Thread(target=simulate)
+    thread.start()
+    thread.join()
+    assert seen == [signal.getsignal(signal.SIGINT)]
 
 
 def test_without_a_plant_nothing_falls_and_ctrl_c_still_ends(falling_plant):
-    monitor = Monitor(ConstantVectorSource([0.0]))
+    monitor = Monitor(ConstantVectorSource([0.0]), LEVEL)
     assert monitor(context_at(falling_plant, 0.01)).severity() == EventStatus.Severity.kSucceeded
     monitor.interrupted = True
     assert monitor(context_at(falling_plant, 0.01, time=1.0)).severity() == EventStatus.Severity.kReachedTermination
