@@ -67,7 +67,7 @@ class StepPlacement:
         return max(self.min_width - max(abs(x) - ABREAST, 0.0), -self.max_crossover)
 
     def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
-        """Waypoint beside the stance foot on the way of a swinging foot that would hit it.
+        """Waypoint beside the stance foot for a swinging foot that would hit it.
 
         Args:
             foot: Position of the swinging foot.
@@ -75,7 +75,7 @@ class StepPlacement:
             stance: The stance foot.
 
         Returns:
-            The waypoint, and the fraction of the way until it; None if the way is clear.
+            The waypoint, and its fraction of the path to the foothold; None if the path is clear.
         """
         outward = OUTWARD[stance]
         if outward * foot.imag >= self.min_width or foot.real * foothold.real >= 0.0:

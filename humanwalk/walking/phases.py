@@ -55,7 +55,7 @@ class PhaseTransitions:
         )
 
     def advance(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
-        """The state after the transition that is due, if any, over the feet as they are measured."""
+        """The state after the transition that is due, if any, with the stance foot where it is measured."""
         return self._reanchor_airborne_stance(self._transition(state, body, command), body)
 
     def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
@@ -74,7 +74,7 @@ class PhaseTransitions:
         return state
 
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
-        """The old foot begins to swing as it is measured."""
+        """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
         foot = body.foot(state.swing_side)
         profile = SwingProfile.from_toe_off(

@@ -25,6 +25,6 @@ class ScalarMotion(NamedTuple):
 
 def blend(start: float, end: float, time: float, duration: float) -> ScalarMotion:
     """Quintic motion from `start` to `end` within a duration; at rest before and after."""
-    share, slope, curvature = quintic_blend(clip(time / duration, 0.0, 1.0))
+    s, slope, curvature = quintic_blend(clip(time / duration, 0.0, 1.0))
     change = end - start
-    return ScalarMotion(start + change * share, change * slope / duration, change * curvature / duration**2)
+    return ScalarMotion(start + change * s, change * slope / duration, change * curvature / duration**2)

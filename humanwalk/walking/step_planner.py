@@ -87,9 +87,9 @@ class StepPlanner:
             gait = desired_gait(state, command, p)
             end = gait.end_offsets(self.frequency).on(state.stance)
             start = backward(gait.segments(state.stance)[1:], end, self.frequency)
-            way = state.world(p.support.center + start) - dcm_reference
-            share = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
-            dcm_reference, dcm_rate = dcm_reference + share.value * way, share.rate * way
+            change = state.world(p.support.center + start) - dcm_reference
+            s = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
+            dcm_reference, dcm_rate = dcm_reference + s.value * change, s.rate * change
         zmp = dcm_reference - dcm_rate / self.frequency + (1.0 + p.dcm_gain) * (dcm - dcm_reference)
         balance = Balance(self._clamp(state, zmp), dcm, dcm_reference)
         feet: dict[Side, FootReference] = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in SIDES}
@@ -118,7 +118,7 @@ class StepPlanner:
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
         desired = gait.displacement.on(state.stance) + foothold_gain(self.frequency, timing.double_support) * error
 
-        # Clock of the step, and the swinging foot.
+        # Clock of the step and swinging foot: a foothold out of reach makes the clock run faster.
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
         if swing is None:
             excess = placement.crossover_distance(desired, state.stance, foot)
@@ -157,8 +157,8 @@ class StepPlanner:
         foothold = swing.foothold
         if timing.step - state.elapsed > FREEZE_TIME:
             is_first = state.elapsed - timing.double_support < 0.5 * self._period
-            share = 1.0 if is_first else self._period / (self._period + FILTER_TIME)
-            filtered = foothold.position + share * (goal - foothold.position)
+            smoothing = 1.0 if is_first else self._period / (self._period + FILTER_TIME)
+            filtered = foothold.position + smoothing * (goal - foothold.position)
             foothold = Foothold.on(self._terrain, filtered)
         landing = law.landing(foothold.position, command.velocity * state.direction)
         motion = swing.motion.towards(landing, remaining, self._period)
@@ -166,8 +166,8 @@ class StepPlanner:
             state.local(swing.motion.position), state.local(foothold.position), state.stance
         )
         if waypoint is not None:
-            point, share = waypoint
-            passing = swing.motion.towards(PlanarMotion(state.world(point)), share * remaining, self._period)
+            point, fraction = waypoint
+            passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, self._period)
             motion = motion.with_sideways_of(passing, state.direction)
         return swing._replace(motion=motion, foothold=foothold)
 

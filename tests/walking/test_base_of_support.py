@@ -27,8 +27,8 @@ def test_a_point_within_the_base_of_support_is_not_moved(zmp, stance, heading):
 
 
 def test_between_two_feet_it_may_be_anywhere_on_the_line_of_the_ankles():
-    for share in (0.0, 0.3, 0.7, 1.0):
-        zmp = share * (0.6 + 0.16j)
+    for fraction in (0.0, 0.3, 0.7, 1.0):
+        zmp = fraction * (0.6 + 0.16j)
         assert SUPPORT.clamp(zmp, 0.6 + 0.16j, 0.0, other=0.0) == pytest.approx(zmp)
     assert SUPPORT.clamp(0.3 + 0.08j, 0.6 + 0.16j, 0.0) != pytest.approx(0.3 + 0.08j)
 

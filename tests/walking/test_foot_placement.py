@@ -26,9 +26,9 @@ def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(x, y, stance, pl
 
 @given(st.floats(0.16, 0.9), sides)
 def test_a_foot_crosses_only_after_it_has_passed_the_stance_foot(x, stance):
-    wanted = complex(x, -OUTWARD[stance])
+    desired = complex(x, -OUTWARD[stance])
     widths = [
-        OUTWARD[stance] * PLACEMENT.within_reach(wanted, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)
+        OUTWARD[stance] * PLACEMENT.within_reach(desired, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)
     ]
     assert widths[:2] == [PLACEMENT.min_width] * 2
     assert PLACEMENT.min_width >= widths[2] >= widths[3] == PLACEMENT.min_step_width(x)
@@ -41,13 +41,13 @@ def test_the_minimum_width_decreases_with_the_distance_ahead_or_behind(x, farthe
 
 @given(st.floats(-0.6, 0.7), st.floats(0.1, 0.34), sides)
 def test_a_foothold_within_reach_is_not_moved_and_keeps_the_clock(x, width, stance):
-    wanted = complex(x, OUTWARD[stance] * width)
-    assert PLACEMENT.within_reach(wanted, stance, 0.0) == (wanted, 0.0)
+    desired = complex(x, OUTWARD[stance] * width)
+    assert PLACEMENT.within_reach(desired, stance, 0.0) == (desired, 0.0)
 
 
-@pytest.mark.parametrize("wanted", [0.5 - 0.1j, 0.5 + 0.6j, 0.97 + 0.16j, -0.97 + 0.16j])
-def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(wanted):
-    assert PLACEMENT.within_reach(wanted, "Right", 0.0)[1] > 0.0
+@pytest.mark.parametrize("desired", [0.5 - 0.1j, 0.5 + 0.6j, 0.97 + 0.16j, -0.97 + 0.16j])
+def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(desired):
+    assert PLACEMENT.within_reach(desired, "Right", 0.0)[1] > 0.0
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-1.0, 1.5), sides)
@@ -77,13 +77,13 @@ def test_the_foothold_gain_tends_to_one_without_double_support():
 @given(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), sides)
 def test_only_a_foot_that_would_hit_the_stance_foot_has_a_waypoint(x, width, goal, stance):
     outward = OUTWARD[stance]
-    passing_waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * 0.16), stance)
+    waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * 0.16), stance)
     if width >= PLACEMENT.min_width or x * goal >= 0.0:
-        assert passing_waypoint is None
+        assert waypoint is None
     else:
-        place, share = passing_waypoint
-        assert place == complex(0.0, outward * PLACEMENT.passing_distance)
-        assert x + share * (goal - x) == pytest.approx(0.0, abs=1e-9)
+        point, fraction = waypoint
+        assert point == complex(0.0, outward * PLACEMENT.passing_distance)
+        assert x + fraction * (goal - x) == pytest.approx(0.0, abs=1e-9)
 
 
 @given(st.floats(-1.5, 1.5), st.floats(-0.5, 0.5), st.floats(-0.5, 0.8))

@@ -62,8 +62,8 @@ def test_the_center_of_mass_converges_to_the_dcm(com, xi, zmp, t, frequency):
 
 
 @given(st.builds(ZmpSegment, points, points, st.floats(0.05, 1.0)), points, frequencies, st.floats(0.0, 1.0))
-def test_a_segment_can_be_cut_anywhere(segment, xi, frequency, share):
-    t = share * segment.duration
+def test_a_segment_can_be_cut_anywhere(segment, xi, frequency, fraction):
+    t = fraction * segment.duration
     first = ZmpSegment(segment.start, segment.at(t), t)
     whole = segment.forward(xi, frequency)
     assert forward((first, segment.remainder(t)), xi, frequency) == pytest.approx(whole, abs=1e-7)

@@ -27,7 +27,7 @@ LEVEL = Plane()
 
 
 class Stairs:
-    """Steps of one rise along x, of which only heights are known."""
+    """Stairs along x; only their heights are defined."""
 
     def __init__(self, rise, tread=0.3, base=0.0):
         self.rise, self.tread, self.base = rise, tread, base
@@ -57,8 +57,8 @@ def pendulum_walk(plan, command, duration, push=None):
     state = plan.start(body)
     for tick in range(round(duration / PERIOD)):
         time = tick * PERIOD
-        wanted = command(time)
-        state, reference = plan.update(state, body, wanted)
+        commanded = command(time)
+        state, reference = plan.update(state, body, commanded)
         yield time, state, reference, body
         velocity = body.com_velocity + PERIOD * plan.frequency**2 * (body.com - reference.zmp)
         if push is not None and abs(time - push[0]) < 0.5 * PERIOD:
