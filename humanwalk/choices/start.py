@@ -1,6 +1,5 @@
 """The body at time zero."""
 
-import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import PELVIS
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, quantity, require_in_range
+from humanwalk.quantity import ParameterError, did_you_mean, quantity, require_in_range
 from humanwalk.terrain import Terrain
 
 RATES = 1
@@ -70,10 +69,9 @@ def start_positions(
     joints = JointMap.of(plant)
     for name in start.joint_angles:
         if name not in joints.names:
-            near = difflib.get_close_matches(name, joints.names, n=1, cutoff=0.0)[0]
             raise ParameterError(
-                f"start.joint_angles.{name}: no such joint; allowed: the {len(joints.names)} joints of the body; "
-                f"did you mean {near}?"
+                f"start.joint_angles.{name}: no such joint; allowed: the {len(joints.names)} joints of the body"
+                f"{did_you_mean(name, joints.names)}"
             )
     angles = {**posture.angles, **start.joint_angles}
     theta = np.array([angles.get(name, 0.0) for name in joints.names])

@@ -86,8 +86,8 @@ class AsperityParameters:
             for place, (earlier, later) in enumerate(pairwise(getattr(self, name))):
                 if later.at <= earlier.at:
                     raise ParameterError(
-                        f"asperity.{name}.{place + 1}.at: {later.at:g} comes after {earlier.at:g}; allowed: increasing "
-                        "numbers; sort the knots"
+                        f"contact.asperity.{name}.{place + 1}.at: {later.at:g} comes after {earlier.at:g}; allowed: "
+                        "increasing numbers; sort the knots"
                     )
 
 

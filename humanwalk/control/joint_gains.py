@@ -1,6 +1,5 @@
 """PD gains of the joints: what the thesis prints of them, and presets for the rest."""
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -11,7 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import group_of
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, quantity
+from humanwalk.quantity import ParameterError, did_you_mean, quantity
 
 THESIS_ANKLE = (10000.0, 10.0)
 """kp [N m/rad] and kd [N m s/rad] of the ankle: the only gains that the thesis prints (Fig 4.8)."""
@@ -79,10 +78,9 @@ def joint_gains(model: MultibodyPlant, parameters: JointGains) -> tuple[Array, A
         kp[ankle], kd[ankle] = THESIS_ANKLE
     for name, gains in parameters.joints.items():
         if name not in joints.names:
-            near = difflib.get_close_matches(name, joints.names, n=1, cutoff=0.0)[0]
             raise ParameterError(
-                f"gains.joints.{name}: no such joint; allowed: the {len(joints.names)} joints of the body; did you "
-                f"mean {near}?"
+                f"gains.joints.{name}: no such joint; allowed: the {len(joints.names)} joints of the body"
+                f"{did_you_mean(name, joints.names)}"
             )
         i = joints.names.index(name)
         kp[i], kd[i] = gains.kp, gains.kd

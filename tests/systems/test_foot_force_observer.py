@@ -12,6 +12,8 @@ from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.body.limbs import LEGS
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.choices.actuation import PdActuation
 from humanwalk.choices.contact import CONTACTS
 from humanwalk.diagrams.world import add_world
 from humanwalk.quantity import GRAVITY
@@ -20,11 +22,11 @@ from humanwalk.systems.foot_force_observer import FootForceObserver
 from humanwalk.terrain import Plane
 
 N = 42
-SCENARIO = Scenario(simulation=SimulationParameters(time_step=0.002))
+SCENARIO = Scenario(simulation=SimulationParameters(time_step=0.002), actuation=PdActuation(law="implicit"))
 
 
 def standing(contact, lift=0.0, duration=1.0):
-    """Feet (2, 8) of the stiff human after some time on level ground, the plant's weight and the pelvis' motion."""
+    """Feet (2, 8) of the stiff human some time after neutral standing, weight, poses of the soles, velocities."""
     builder = DiagramBuilder()
     human = add_world(builder, dataclasses.replace(SCENARIO, contact=CONTACTS[contact]()))
     plant = human.plant
@@ -34,7 +36,7 @@ def standing(contact, lift=0.0, duration=1.0):
     simulator = Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     pelvis = plant.GetBodyByName("Pelvis")
-    q = plant.GetPositions(context)
+    q = kinematics_plant(SCENARIO.subject).GetDefaultPositions()
     q[pelvis.floating_positions_start() + 6] += lift
     plant.SetPositions(context, q)
     simulator.AdvanceTo(duration)
