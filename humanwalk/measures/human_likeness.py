@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib.resources import files
+from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +19,7 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import other_side
+from humanwalk.body.limbs import LEGS, Leg, other_side
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.gait_measures import (
@@ -68,8 +69,22 @@ COM_SPEEDS = (0.7, 1.6)
 """People's mean and standard deviation at two speeds [m], and the speeds [m/s]; abstract of Orendurff et al. (2004)."""
 
 
-def _joint(motion: str, signals: pa.Table, side: Side) -> Array:
-    return np.degrees(matrix(signals, [f"{side}{motion}.angle_rad"])[:, 0])
+JOINTS: dict[str, Callable[[Leg], str]] = {
+    "hip": attrgetter("hip_flexion"),
+    "knee": attrgetter("knee"),
+    "ankle": attrgetter("ankle"),
+}
+"""The sagittal joint of a leg by its name in ANGLES."""
+
+
+def joint_signal(signals: pa.Table, joint: str, side: Side, quantity: str) -> Array:
+    """A signal of one of JOINTS, shape (rows,): its angle_rad, velocity_rad_s or torque_N_m."""
+    values: Array = signals[f"{JOINTS[joint](LEGS[side])}.{quantity}"].to_numpy()
+    return values
+
+
+def _joint(joint: str, signals: pa.Table, side: Side) -> Array:
+    return np.degrees(joint_signal(signals, joint, side, "angle_rad"))
 
 
 def _pelvis(axis: int, left: int, right: int, signals: pa.Table, side: Side) -> Array:
@@ -93,13 +108,10 @@ class Angle:
     of: Callable[[pa.Table, Side], Array]
 
 
-JOINTS = {"hip": "LegFemurMotion", "knee": "LegTibiaMotion", "ankle": "LegAnkleMotion"}
-"""The sagittal joint of a leg by its name in ANGLES, without its side."""
-
 ANGLES = {
-    "hip": Angle("flexion", "hip_flexion_deg", partial(_joint, JOINTS["hip"])),
-    "knee": Angle("flexion", "knee_flexion_deg", partial(_joint, JOINTS["knee"])),
-    "ankle": Angle("dorsiflexion", "ankle_dorsiflexion_deg", partial(_joint, JOINTS["ankle"])),
+    "hip": Angle("flexion", "hip_flexion_deg", partial(_joint, "hip")),
+    "knee": Angle("flexion", "knee_flexion_deg", partial(_joint, "knee")),
+    "ankle": Angle("dorsiflexion", "ankle_dorsiflexion_deg", partial(_joint, "ankle")),
     "pelvis tilt": Angle("forward", "pelvis_anterior_tilt_deg", partial(_pelvis, 2, 1, 1)),
     "pelvis obliquity": Angle("side up", "pelvis_up_obliquity_deg", partial(_pelvis, 1, 1, -1)),
     "pelvis rotation": Angle("side forward", "pelvis_internal_rotation_deg", partial(_pelvis, 0, -1, 1)),
@@ -235,12 +247,14 @@ def force_humps(signals: pa.Table, side: Side, foot: FootEvents, weight: float) 
     Args:
         weight: of the body [N].
     """
-    time = signals[TIME].to_numpy()
-    low_pass = butter(2, FORCE_CUTOFF_HZ, fs=1.0 / np.median(np.diff(time)), output="sos")
-    force = sosfiltfilt(low_pass, signals[f"{side.lower()}_foot.force_z_N"].to_numpy()) / weight
+    force = signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / weight
+    rate = 1.0 / float(np.median(np.diff(foot.time)))
+    # A record of fewer than two samples per period of the cutoff holds nothing above it.
+    if rate > 2.0 * FORCE_CUTOFF_HZ:
+        force = sosfiltfilt(butter(2, FORCE_CUTOFF_HZ, fs=rate, output="sos"), force)
     humps = []
     for a, b in foot.stances:
-        middle = (a + b) // 2
+        middle = a + max(1, (b - a) // 2)
         first, second = a + int(force[a:middle].argmax()), middle + int(force[middle:b].argmax())
         humps.append((force[first], force[first : second + 1].min(), force[second]))
     return np.array(humps).reshape(-1, 3)
@@ -259,9 +273,9 @@ def com_excursions(signals: pa.Table, foot: FootEvents, axis: str) -> Array:
     return np.array([np.ptp(place[a : b + 1] - np.linspace(place[a], place[b], b + 1 - a)) for a, b in foot.strides])
 
 
-def peak_moments(signals: pa.Table, motion: str, sign: int, side: Side, foot: FootEvents) -> Array:
-    """Greatest torque of a leg's joint in every stride, flexing for sign 1 and extending for -1 [N m]."""
-    torque = sign * signals[f"{side}{motion}.torque_N_m"].to_numpy()
+def peak_moments(signals: pa.Table, joint: str, sign: int, side: Side, foot: FootEvents) -> Array:
+    """Greatest torque of one of JOINTS in every stride, in flexion for sign 1 and in extension for -1 [N m]."""
+    torque = sign * joint_signal(signals, joint, side, "torque_N_m")
     return np.array([torque[a:b].max() for a, b in foot.strides])
 
 
@@ -312,10 +326,10 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, FootEvents
     yield Measure("least knee flexion, terminal stance", "deg", least, _people_late_stance_knee())
     cost = cost_of_transport(signals, time >= begin, mass)
     yield Measure("cost of transport", "", np.array([np.nan if cost is None else cost]))
-    for joint, motion in JOINTS.items():
+    for joint in JOINTS:
         bends = ("dorsiflexion", "plantarflexion") if joint == "ankle" else ("flexion", "extension")
         for name, sign in zip(bends, (1, -1), strict=True):
-            peaks = each(partial(peak_moments, signals, motion, sign)) / mass
+            peaks = each(partial(peak_moments, signals, joint, sign)) / mass
             yield Measure(f"moment, {joint} {name}", "N m/kg", peaks)
 
 

@@ -1,6 +1,7 @@
 """Reads signals and summary of a run folder that somebody else may have made: checked, and within bounded memory."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,9 @@ MAX_ROWS = 400_000
 
 MAX_COLUMNS = 1000
 """A record has some 320."""
+
+COLUMN_NAME = re.compile(r"[A-Za-z]\w{0,62}\.[A-Za-z]\w{0,62}", re.ASCII)
+"""Names of columns: no formula of a spreadsheet, and two names of fields for MATLAB, which end at 63 characters."""
 
 MAX_SIGNALS_BYTES = 1_000_000_000
 MAX_SUMMARY_BYTES = 1_000_000
@@ -123,8 +127,8 @@ def _check_metadata(path: Path, metadata: pq.FileMetaData, schema: pa.Schema, ph
     for field in schema:
         if field.type != pa.float64():
             raise _refusal(path, f"column {printable(field.name)} is of type {printable(field.type, 40)}")
-        if not field.name.isprintable() or len(field.name) > 100:
-            raise _refusal(path, f"column {printable(field.name, 40)} has no name of up to 100 printable characters")
+        if field.name != TIME and not COLUMN_NAME.fullmatch(field.name):
+            raise _refusal(path, f"column {printable(field.name, 40)} is not named thing.quantity_unit")
     if len(set(names)) < len(names):
         double = next(name for i, name in enumerate(names) if name in names[:i])
         raise _refusal(path, f"column {printable(double)} comes twice")

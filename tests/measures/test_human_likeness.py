@@ -193,3 +193,11 @@ def test_moments_of_bending_and_stretching_are_apart(walk, scenario):
     measures = {measure.name: measure.values for measure in compare(walk(**torque), scenario).measures}
     assert measures["moment, knee flexion"] == pytest.approx(0.6, rel=0.01)
     assert measures["moment, knee extension"] == pytest.approx(0.4, rel=0.01)
+
+
+def test_record_that_is_sampled_slowly_is_compared_too(walk, scenario):
+    """The longest signal period of a scenario is below the rate of the force filter."""
+    rows = np.arange(0, walk().num_rows, 10)
+    measures = {measure.name: measure.values for measure in compare(walk().take(rows), scenario).measures}
+    assert measures["cadence"] == pytest.approx(120 / STRIDE, rel=0.02)
+    assert np.isfinite(measures["ground force, dip"]).all()

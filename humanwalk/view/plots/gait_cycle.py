@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.events import events_of
-from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, over_strides, people
+from humanwalk.measures.human_likeness import ANGLES, CYCLE, JOINTS, joint_signal, over_strides, people
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
@@ -59,12 +59,10 @@ def joint_power(run: Run) -> Figure | None:
     """
     mass = run.scenario.subject.mass
     figure = _three("Power of hip, knee and ankle over the gait cycle; bands: ± 1 standard deviation")
-    for axes, (name, motion) in zip(figure.axes, JOINTS.items(), strict=True):
+    for axes, name in zip(figure.axes, JOINTS, strict=True):
         level(axes, 0.0)
         for side in SIDES:
-            torque, rate = (
-                run.signals[f"{side}{motion}.{what}"].to_numpy() for what in ("torque_N_m", "velocity_rad_s")
-            )
+            torque, rate = (joint_signal(run.signals, name, side, what) for what in ("torque_N_m", "velocity_rad_s"))
             if not _mean_and_band(axes, run, side, torque * rate / mass):
                 return None
         _finish(axes, f"{name} power [W/kg]\ndriving positive", name)
