@@ -15,7 +15,7 @@ from humanwalk.cli.walk import walk_and_write
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.files import make_folder
 from humanwalk.run.folder import Run
-from humanwalk.scenario import load_scenario, shipped_scenarios
+from humanwalk.scenario import load_scenario
 from humanwalk.view.diagram_picture import draw_diagram
 from humanwalk.view.plots import PLOTS, write_gait_figures
 from humanwalk.view.plots.drawing import save
@@ -69,6 +69,10 @@ SHOTS = {
 }
 
 
+DIAGRAMS = {"thesis": "thesis", "balanced": "walk"}
+"""A scenario of each controller that is drawn as a block diagram; all scenarios of a controller have the same wires."""
+
+
 def run_of(name: str, shot: Shot, console: Console) -> Run:
     """The run of a shot, walked if it is not there yet."""
     folder = RUNS / name
@@ -107,8 +111,8 @@ def main(names: Sequence[str]) -> None:
     record_video(thesis.path, IMAGES / "walker.webp", loop)
 
     write_gait_figures(IMAGES / "thesis")
-    for name in shipped_scenarios():
-        draw_diagram(make_diagram(load_scenario(name)), IMAGES / f"diagram_{name}.svg")
+    for controller, scenario in DIAGRAMS.items():
+        draw_diagram(make_diagram(load_scenario(scenario)), IMAGES / f"diagram_{controller}.svg")
     console.print(f"{GALLERY} and {IMAGES} are made")
 
 
