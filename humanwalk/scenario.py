@@ -9,6 +9,7 @@ Terrain, contact, controller and actuation are choices: the tag alone (`contact:
 of its own. Units are SI throughout: meters, seconds, radians, newtons, kilograms.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -136,7 +137,8 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     """
     shipped = shipped_scenarios()
     path = shipped.get(str(name_or_path), Path(name_or_path))
-    if not path.exists():
+    # Path.exists raises for names that are too long.
+    if not os.path.exists(path):
         raise ParameterError(
             f"scenario: {name_or_path}: no such scenario or file; allowed: {', '.join(shipped)}, or the path of a YAML "
             f"file{did_you_mean(str(name_or_path), tuple(shipped))}"

@@ -35,9 +35,7 @@ PENDING: dict[str, dict[str, str]] = {
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py",
     },
-    "size": {
-        "h6": "cli/main.py",
-    },
+    "size": {},
     "array": {
         "h3": "gait/thesis_path.py",
         "h5": "measures/effort.py measures/human_likeness.py measures/summary.py",

@@ -1,4 +1,4 @@
-"""One walk from the command line: simulate with a progress bar, write the run folder, print the summary."""
+"""One walk: simulate with a progress bar, write the run folder, print the summary."""
 
 import json
 import shutil
@@ -14,13 +14,16 @@ from rich.table import Table
 
 from humanwalk.files import write_text
 from humanwalk.motion.motion_table import read_motion_table
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
 from humanwalk.view.replay import make_meshcat, static_page
+
+EXTERNAL_SUPPORT = "EXTERNAL SUPPORT"
+"""Shown for every run that had it, even before there is a value."""
 
 
 def walk_and_write(
@@ -34,20 +37,19 @@ def walk_and_write(
     console: Console,
     checkpoint_period: float = 60.0,
 ) -> Run:
-    """Simulate a scenario and write everything that comes out of it.
+    """Simulate a scenario and write its run folder.
 
     Args:
-        scenario: name or path.
-        overrides: see `load_scenario`.
-        output: folder of the run, or None for the next free one under runs/.
-        live: watch in the browser while it is simulated.
-        replay, plots: whether to write them.
-        console: where progress and summary go.
-        checkpoint_period: seconds on the clock after which an unfinished run is written, again and again; a program
-            that is killed leaves the last of them.
+        scenario: Name or path.
+        overrides: See `load_scenario`.
+        output: Folder of the run, or None for the next free one under runs/.
+        live: Whether to show the simulation in the browser.
+        replay, plots: Whether to write them.
+        console: Where progress and summary are printed.
+        checkpoint_period: Wall-clock seconds between checkpoints; a killed program leaves the last one.
 
     Raises:
-        ParameterError: bad input; nothing is left behind half-written.
+        ParameterError: Invalid input; no incomplete file is left behind.
     """
     loaded = load_scenario(scenario, overrides)
     name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
@@ -61,13 +63,13 @@ def walk_and_write(
             outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
             run = _write_or_rescue(path, outcome, name)
     except BaseException:
-        # Nothing was recorded: an empty folder would only be in the way of the next attempt.
+        # Nothing was recorded: an empty folder would obstruct the next attempt.
         with suppress(OSError):
             for folder in made:
                 folder.rmdir()
         raise
     if not run.summary["physics"]:
-        console.print("no physics: joints and pelvis are where the recording has them; no forces, torques or balance")
+        console.print("no physics: joints and pelvis follow the recording exactly; no forces, torques or balance")
     duration = run.summary["duration_s"]
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
@@ -77,21 +79,21 @@ def walk_and_write(
     console.print(summary_table(run.summary))
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
     if replay:
-        console.print(f"look at it: humanwalk replay {run.path}")
+        console.print(f"show it: humanwalk replay {run.path}")
     return run
 
 
 def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> dict[str, str]:
-    """Overrides for a scenario that follows a recording to its end, with or without physics.
+    """Overrides of a scenario that follows a recording to its end, with or without physics.
 
     Raises:
-        ParameterError: the recording cannot be read.
+        ParameterError: The recording cannot be read.
     """
     time = read_motion_table(recording).time
     recorded = {"angles": str(recording.resolve()), "kinematic": kinematic}
     if mapping is not None:
         recorded["mapping"] = str(mapping.resolve())
-    # JSON is YAML, and quotes whatever a path may hold.
+    # JSON is YAML, and quotes any character in a path.
     return {
         "controller": json.dumps({"recorded": recorded}),
         "duration": repr(float(time[-1] - time[0])),
@@ -100,10 +102,10 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
 
 
 def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
-    """Write the run into its folder, or, where that fails, into one for temporary files: it took long to simulate.
+    """Write the run into its folder, or, if that fails, into a temporary one, so that the simulation is not lost.
 
     Raises:
-        ParameterError: it could not be written to `path`; says where it is.
+        ParameterError: The run was not written to `path`; the message has the other folder.
     """
     try:
         return outcome.write(path, name)
@@ -127,7 +129,7 @@ def _simulate_with_progress(
     console: Console,
 ) -> Outcome:
     def checkpoint(so_far: Outcome) -> None:
-        # A disk that is full now may have room at the end.
+        # A disk that is full now may have space at the end.
         with suppress(ParameterError):
             so_far.write(path, name)
 
@@ -141,7 +143,7 @@ def _simulate_with_progress(
     task = progress.add_task(name, total=scenario.duration)
 
     def show(time: float) -> None:
-        # Started late, so that a scenario that cannot be simulated is answered with a line and no bar.
+        # Started late: a scenario that cannot be simulated produces only a one-line error.
         if not progress.live.is_started:
             progress.start()
             if not console.is_terminal:
@@ -163,14 +165,19 @@ def _simulate_with_progress(
 
 
 def summary_table(summary: Mapping[str, Any]) -> Table:
-    """The summary's main figures for people."""
-    table = Table(title=f"{summary['scenario']}: {summary['end']} at {summary['duration_s']:.2f} s", show_header=False)
+    """Main figures of a summary; those that a run does not have are omitted, except that it had external support."""
+    table = Table(
+        title=f"{printable(summary['scenario'])}: {summary['end']} at {summary['duration_s']:.2f} s", show_header=False
+    )
     table.add_column(justify="left")
     table.add_column(justify="right")
     table.add_column(justify="left")
 
     def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
-        table.add_row(what, "-" if value is None else format(per_unit * value, form), unit)
+        if value is not None:
+            table.add_row(what, format(per_unit * value, form), unit)
+        elif what.startswith(EXTERNAL_SUPPORT):
+            table.add_row(what, "-", unit)
 
     commanded = summary["commanded_speed_m_s"]
     row(
@@ -183,14 +190,13 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
     row("steps", summary["steps"], "d", "")
     for side in ("right", "left"):
         row(f"{side} foot lift", summary["foot_lift_m"][side], ".1f", "cm", per_unit=100)
-        row(f"{side} foot off its line", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
+        row(f"{side} foot lateral deviation", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
     row("lateral drift", summary["lateral_drift_m"], ".2f", "cm", per_unit=100)
-    row("pelvis off its reference, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
+    row("pelvis tracking error, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
     if summary["external_support"]:
-        row("EXTERNAL SUPPORT force, rms", summary["support_force_rms_N"], ".0f", "N")
-        row("EXTERNAL SUPPORT torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
-    if summary["qp_failures"] is not None:
-        row("whole-body programs without solution", summary["qp_failures"], "d", "")
+        row(f"{EXTERNAL_SUPPORT} force, rms", summary["support_force_rms_N"], ".0f", "N")
+        row(f"{EXTERNAL_SUPPORT} torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
+    row("QP failures", summary["qp_failures"], "d", "")
     if summary["physics"]:
         name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
         row(f"peak torque, {name}", torque, ".0f", "N m")

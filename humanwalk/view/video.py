@@ -1,4 +1,4 @@
-"""The replay of a run as a video or a strip of stills, drawn frame by frame in a headless browser."""
+"""The replay of a run as a video or a strip of stills, rendered frame by frame in a headless browser."""
 
 import io
 import math
@@ -22,20 +22,24 @@ from humanwalk.view.replay import CAMERA_POSITION, CAMERA_TARGET
 View = Literal["follow", "side", "front", "orbit"]
 
 ORBIT_PERIOD_S = 10.0
-"""Time of the replay in which the camera of `orbit` goes round the walker once."""
+"""Time of the replay for one turn of the `orbit` camera around the walker."""
 ORBIT_RADIUS_M = math.hypot(*CAMERA_POSITION[:2])
 
 FORMATS = (".mp4", ".gif", ".webp")
 SIZE_RANGE = (64, 3840)
+MAX_FRAMES = 36_000
+"""Longest video: 20 minutes at 30 frames per second."""
+MAX_STRIP_PIXELS = 50_000_000
+"""Largest strip; its memory is 3 bytes per pixel."""
 
 FRAME_END = 1e-9
-"""Share of a frame by which the last one may be over the end: sums of fractions are not exact."""
+"""Fraction of a frame by which the last one may exceed the end: sums of fractions are not exact."""
 
 STRIP_GAP = 8
 STRIP_LABEL = 30
-"""Pixels between stills, and of the line of text below them."""
+"""Gap between stills, and height of the text line below them [pixels]."""
 
-# The picture is the JPEG of the browser, in its colours; everyone's players want those of television.
+# The input is the browser's JPEG, in full-range BT.601; players expect BT.709 of limited range.
 H264 = [
     "-vf",
     "scale=in_color_matrix=bt601:in_range=full:out_color_matrix=bt709:out_range=limited,format=yuv420p",
@@ -46,18 +50,18 @@ H264 = [
 WEBP = ["-c:v", "libwebp_anim", "-quality", "70", "-compression_level", "4", "-loop", "0"]
 PALETTE = ["-vf", "palettegen=stats_mode=diff", "-frames:v", "1"]
 GIF = ["-lavfi", "paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle", "-loop", "0"]
-# The same frames make the same bytes: one thread, no date, no version of the encoder.
+# The same frames give the same bytes: one thread, no date, no encoder version.
 EXACT = ["-threads", "1", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
 
 
 @dataclass(frozen=True)
 class VideoParameters:
-    """What is recorded of a replay.
+    """Rendering of a replay.
 
     Attributes:
-        width, height: of the picture in pixels; even numbers, as H.264 wants them.
-        view: from where: `follow` as the replay page begins, `side` from the right, `front`, or `orbit` around.
-        begin, end: stretch of the replay [s]; no end is the replay's.
+        width, height: Size of the picture in pixels; even numbers, which H.264 requires.
+        view: `follow` as the replay page begins, `side` from the right, `front`, or `orbit` around the walker.
+        begin, end: Part of the replay [s]; None is its end.
     """
 
     frame_rate: float = quantity(30.0, "1/s", 1.0, 120.0)
@@ -76,53 +80,58 @@ class VideoParameters:
         """Check every value.
 
         Raises:
-            ParameterError: with the option, the value, the allowed range and a mend.
+            ParameterError: A value is out of range.
         """
         check(self, "video")
         check_picture(self.width, self.height, self.view)
 
     def times(self, duration: float) -> list[float]:
-        """Instants of the frames in a replay of `duration` [s].
+        """Times of the frames in a replay of `duration` [s].
 
         Raises:
-            ParameterError: the stretch is not in the replay.
+            ParameterError: The part is not in the replay, or has more than MAX_FRAMES frames.
         """
         end = duration if self.end is None else self.end
         require_in_range("--from", self.begin, "s", 0.0, duration)
         require_in_range("--to", end, "s", self.begin, duration)
         step = self.speed / self.frame_rate
-        return [self.begin + k * step for k in range(1 + math.floor((end - self.begin) / step + FRAME_END))]
+        frames = 1 + math.floor((end - self.begin) / step + FRAME_END)
+        if frames > MAX_FRAMES:
+            raise ParameterError(
+                f"video: {frames} frames; allowed: up to {MAX_FRAMES}; shorten it (--from, --to) or lower --fps"
+            )
+        return [self.begin + k * step for k in range(frames)]
 
 
 def check_picture(width: int, height: int, view: str) -> None:
-    """Raise ParameterError for a size or a view that cannot be drawn."""
+    """Raise ParameterError for an invalid size or view."""
     low, high = SIZE_RANGE
     if not all(low <= length <= high and length % 2 == 0 for length in (width, height)):
         raise ParameterError(
-            f"--size {width}x{height}: cannot be drawn; allowed: even numbers from {low} to {high}; like 1280x720"
+            f"--size {width}x{height}: invalid; allowed: even numbers from {low} to {high}; like 1280x720"
         )
     if view not in get_args(View):
         raise ParameterError(f"--view {view}: unknown; allowed: {', '.join(get_args(View))}; choose one of them")
 
 
 def parse_size(text: str) -> tuple[int, int]:
-    """Width and height out of "1280x720"."""
+    """Width and height from text such as "1280x720"."""
     match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
     if match is None:
-        raise ParameterError(f"--size {text}: no size; allowed: WIDTHxHEIGHT in pixels; like 1280x720")
+        raise ParameterError(f"--size {text}: invalid; allowed: WIDTHxHEIGHT in pixels; like 1280x720")
     return int(match[1]), int(match[2])
 
 
 def parse_times(text: str) -> list[float]:
-    """Instants [s] out of "1.0,1.1,1.2"."""
+    """Times [s] from text such as "1.0,1.1,1.2"."""
     try:
         return [float(word) for word in text.split(",")]
     except ValueError:
-        raise ParameterError(f"--times {text}: no times; allowed: seconds with commas between; like 1.0,1.2") from None
+        raise ParameterError(f"--times {text}: invalid; allowed: seconds separated by commas; like 1.0,1.2") from None
 
 
 def camera(view: View, time: float) -> Camera:
-    """The camera of a view at an instant of the replay [s]; see `browser.Camera` for its frame."""
+    """Camera of a view at a time of the replay [s]; see `browser.Camera` for its frame."""
     if view == "side":
         return Camera((0.0, -4.7, 1.0), (0.0, 0.0, 0.86))
     if view == "front":
@@ -140,21 +149,21 @@ def record_video(
     parameters: VideoParameters,
     on_progress: Callable[[int, int], None] = lambda done, frames: None,
 ) -> int:
-    """Record the replay of a run into a video file, whole or not at all.
+    """Render the replay of a run as a video file, written whole or not at all.
 
-    The same run and parameters make the same frames, whatever the machine's speed.
+    The same run and parameters give the same frames, independent of the machine's speed.
 
     Args:
-        run: folder of the run.
-        output: H.264 as .mp4, or .gif or .webp, which play over and over.
-        parameters: what to record.
-        on_progress: called with the number of frames that are drawn, and of all of them.
+        run: Folder of the run.
+        output: H.264 as .mp4, or .gif or .webp, which loop.
+        parameters: What to render.
+        on_progress: Called with the number of rendered frames, and of all frames.
 
     Returns:
         Number of frames.
 
     Raises:
-        ParameterError: no run or replay, an unknown format, nothing to record with, or no room; nothing is written.
+        ParameterError: No run or replay, unknown format, missing programs, or no space left; nothing is written.
         KeyboardInterrupt: Ctrl-C; nothing is written.
     """
     opened = Run.open(run)
@@ -163,7 +172,7 @@ def record_video(
     if form not in FORMATS:
         raise ParameterError(f"-o {output}: unknown video format; allowed: {', '.join(FORMATS)}; name it walk.mp4")
     ffmpeg = find_ffmpeg()
-    # Now, rather than when all frames are drawn.
+    # Checked before the frames are rendered.
     make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
         frames = Path(folder) / "frames.mjpeg"
@@ -183,18 +192,27 @@ def record_video(
     return len(times)
 
 
-def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, height: int, view: View) -> None:
+def write_snapshot(
+    run: Path,
+    output: Path,
+    times: Sequence[float],
+    width: int,
+    height: int,
+    view: View,
+    on_progress: Callable[[int, int], None] = lambda done, frames: None,
+) -> None:
     """Write stills of a replay side by side into a PNG file, each with its time below, whole or not at all.
 
     Args:
-        run: folder of the run.
-        output: the picture.
-        times: of the stills [s].
-        width, height: of one still in pixels.
-        view: from where; `orbit` turns from one still to the next.
+        run: Folder of the run.
+        output: The picture.
+        times: Times of the stills [s].
+        width, height: Size of one still in pixels.
+        view: Camera; `orbit` turns from one still to the next.
+        on_progress: Called with the number of rendered stills, and of all stills.
 
     Raises:
-        ParameterError: no run or replay, a time outside it, a name other than .png, or nothing to draw with.
+        ParameterError: No run or replay, a time outside it, a suffix other than .png, or missing programs.
     """
     from PIL import Image, ImageDraw, ImageFont
 
@@ -204,7 +222,10 @@ def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, 
         raise ParameterError(f"-o {output}: unknown picture format; allowed: .png; name it strip.png")
     check_picture(width, height, view)
     if not times:
-        raise ParameterError("--times: none; allowed: at least one instant; like 1.0,1.2")
+        raise ParameterError("--times: empty; allowed: at least one time; like 1.0,1.2")
+    if len(times) * width * height > MAX_STRIP_PIXELS:
+        most = MAX_STRIP_PIXELS // (width * height)
+        raise ParameterError(f"--times: {len(times)} stills of {width}x{height}; allowed: up to {most}; remove some")
     make_folder(output.parent)
     strip = Image.new("RGB", (len(times) * (width + STRIP_GAP) - STRIP_GAP, height + STRIP_LABEL), "white")
     draw = ImageDraw.Draw(strip)
@@ -216,14 +237,15 @@ def write_snapshot(run: Path, output: Path, times: Sequence[float], width: int, 
             left = place * (width + STRIP_GAP)
             strip.paste(Image.open(io.BytesIO(stage.still(time, camera(view, time), "png"))), (left, 0))
             draw.text((left + width / 2, height + STRIP_LABEL / 2), f"{time:g} s", "#202020", font, anchor="mm")
+            on_progress(place + 1, len(times))
     write_whole(output, lambda beside: strip.save(beside, optimize=True))
 
 
 def find_ffmpeg() -> str:
-    """The ffmpeg that comes with imageio-ffmpeg, or that $IMAGEIO_FFMPEG_EXE names.
+    """The ffmpeg of imageio-ffmpeg, or the one named by $IMAGEIO_FFMPEG_EXE.
 
     Raises:
-        ParameterError: there is none, with what to install.
+        ParameterError: No ffmpeg is found.
     """
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
@@ -233,13 +255,13 @@ def find_ffmpeg() -> str:
         return str(get_ffmpeg_exe())
     except RuntimeError:
         raise ParameterError(
-            "video: imageio-ffmpeg holds no ffmpeg for this machine; install ffmpeg and name it in $IMAGEIO_FFMPEG_EXE"
+            "video: imageio-ffmpeg has no ffmpeg for this machine; install ffmpeg and name it in $IMAGEIO_FFMPEG_EXE"
         ) from None
 
 
 @contextmanager
 def between_frames() -> Iterator[Callable[[], bool]]:
-    """Within the block Ctrl-C only sets what the function returns; a second one does what it always did."""
+    """Within the block, the first Ctrl-C only makes the yielded function return True."""
     pressed = False
 
     def interrupt(signum: int, frame: object) -> None:
@@ -268,7 +290,7 @@ def _encode(ffmpeg: str, frames: Path, frame_rate: float, output: Path) -> None:
 
 
 def _run(ffmpeg: str, *arguments: str) -> None:
-    # In a session of its own, Ctrl-C does not reach it: the file is whole, and then thrown away.
+    # Ctrl-C does not reach a session of its own: the file is completed, and then discarded.
     result = subprocess.run(
         [ffmpeg, "-hide_banner", "-loglevel", "error", "-nostdin", "-y", *arguments],
         capture_output=True,

@@ -14,6 +14,7 @@ import pytest
 from humanwalk.bench import measure, read_result
 from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.main import app, main
+from humanwalk.cli.walk import summary_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario, shipped_scenarios
@@ -77,12 +78,30 @@ def test_help_of_every_command_has_an_example(humanwalk, command):
     assert "Example" in out
 
 
-def test_scenarios_are_listed_with_what_they_are(humanwalk):
+def test_commands_are_grouped_by_subject(humanwalk):
+    _, out, _ = humanwalk("--help")
+    groups = [line.strip("╭─╮ ") for line in out.splitlines() if line.startswith("╭")]
+    assert groups == ["Options", "Models, diagrams and cost", "Show and analyze a run", "Simulate"]
+
+
+@pytest.mark.parametrize(
+    ("command", "units"),
+    [("model", ["[kg]", "[m]"]), ("walk", ["[s]"]), ("video", ["time of the run [s]"]), ("bench", ["[s]"])],
+)
+def test_help_shows_units(humanwalk, command, units):
+    """Rich takes text in brackets for markup."""
+    _, out, _ = humanwalk(command, "--help")
+    assert [unit for unit in units if unit not in out] == []
+
+
+def test_scenarios_are_listed_with_their_descriptions(humanwalk):
     code, out, _ = humanwalk("scenarios")
     assert code == 0
+    assert "duration [s]" in out
+    assert "speed [m/s]" in out
     for name in shipped_scenarios():
         (line,) = (line for line in out.splitlines() if line.startswith(f"│ {name} "))
-        assert f"{load_scenario(name).commanded_speed:g}" in line
+        assert f"{load_scenario(name).controller.commanded_speed or 0.0:g}" in line
 
 
 def test_installed_command_answers():
@@ -97,7 +116,42 @@ def test_installed_command_answers():
 # walk.
 
 
-def test_walk_writes_the_files_it_promises(humanwalk, tmp_path):
+def test_table_of_a_run_omits_what_it_does_not_have():
+    figures = dict.fromkeys(("mean_speed_m_s", "steps", "pelvis_tracking_rms_m", "cost_of_transport", "qp_failures"))
+    summary = figures | {
+        "scenario": "a\x1b[31m",
+        "end": "completed",
+        "duration_s": 1.0,
+        "commanded_speed_m_s": None,
+        "distance_m": 1.5,
+        "foot_lift_m": {"right": 0.1, "left": None},
+        "foot_line_error_m": {"right": 0.1, "left": 0.1},
+        "lateral_drift_m": 0.0,
+        "external_support": False,
+        "physics": False,
+        "realtime_factor": 1.0,
+    }
+    table = summary_table(summary)
+    first, second, _ = (list(column.cells) for column in table.columns)
+    assert first == [
+        "distance",
+        "right foot lift",
+        "right foot lateral deviation",
+        "left foot lateral deviation",
+        "lateral drift",
+        "real-time factor",
+    ]
+    assert second[0] == "1.50"
+    assert table.title == r"a\x1b[31m: completed at 1.00 s"
+
+
+def test_messages_are_printed_without_control_characters(refusal):
+    line = refusal("walk", "no\nsuch\x1b]0;title\x07scenario")
+    assert line.isprintable()
+    assert len(refusal("walk", 5000 * "x")) < 2100
+
+
+def test_walk_writes_its_files(humanwalk, tmp_path):
     code, out, err = humanwalk("walk", "--duration", "0.2", "--no-plots", "--no-replay", "-o", "walked")
     assert code == 0
     assert out == ""
@@ -171,10 +225,10 @@ def test_fall_has_an_exit_code_and_a_run(humanwalk, tmp_path):
 
 def test_interrupted_walk_keeps_its_run(tmp_path):
     executable = shutil.which("humanwalk", path=os.path.dirname(sys.executable))
-    command = [executable, "walk", "--duration", "3600", "--no-plots", "--no-replay", "-o", "walked"]
+    command = [executable, "walk", "--duration", "600", "--no-plots", "--no-replay", "-o", "walked"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     try:
-        assert process.stderr.readline() == "thesis: walking 3600 s\n"
+        assert process.stderr.readline() == "thesis: walking 600 s\n"
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=60)
     finally:
@@ -191,7 +245,7 @@ def test_interrupted_walk_keeps_its_run(tmp_path):
     ("arguments", "said"),
     [
         (("thesiss",), "thesis"),
-        (("none.yaml",), "No such file"),
+        (("none.yaml",), "no such scenario or file"),
         (("--set", "controller.thesis.gait.path.step_hight=0.1"), "did you mean step_height?"),
         (("--set", "controller.thesis.gait.path.step_length=50"), "write 0.5 (m)"),
         (("--set", "subject.mass=-3"), "allowed: 30 to 200 kg"),
@@ -199,10 +253,10 @@ def test_interrupted_walk_keeps_its_run(tmp_path):
         (("--set", "=3"), "FIELD=VALUE"),
         (("--set", "duration=[1"), "not YAML"),
         (("--duration", "-1"), "duration"),
-        (("--duration", "nan"), "finite"),
+        (("--duration", "nan"), "write a number"),
         (("--set", "controller.thesis.gait.path.offset=0.03"), "shorten the step"),
         (("--set", "controller.thesis.gait.path.toe_drop=0"), "Ankle"),
-        (("--set", "actuation.pd.law=explicit"), "implicit"),
+        (("--set", "actuation.pd.law=explicit"), "unstable"),
         (("--set", "start.joint_angles.RightLegTibiaMotion=-0.3"), "RightLegTibiaMotion"),
     ],
     ids=str,

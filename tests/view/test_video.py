@@ -59,7 +59,7 @@ def test_sizes_and_times_are_read_and_nonsense_is_refused():
         with pytest.raises(ParameterError, match="allowed: WIDTHxHEIGHT"):
             parse_size(text)
     for text in ("", "1.0;2.0", "1.0,"):
-        with pytest.raises(ParameterError, match="seconds with commas"):
+        with pytest.raises(ParameterError, match="seconds separated by commas"):
             parse_times(text)
 
 

@@ -1,0 +1,104 @@
+"""What the commands share: the application, consoles, exit codes, options."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from humanwalk.quantity import ParameterError, printable
+
+# Drake, matplotlib and pyarrow are imported inside the commands: `--help` should not wait for them.
+
+app = typer.Typer(
+    help="A full-body human, 44 bodies and 42 joints, that walks in Drake.",
+    no_args_is_help=True,
+    add_completion=False,
+    # Rich's markup would take a unit for a tag: [kg].
+    rich_markup_mode="markdown",
+    pretty_exceptions_enable=False,
+)
+
+MAX_MESSAGE = 2000
+"""Longest error message that is printed, in characters."""
+
+
+class SafeConsole(Console):
+    """A console for text that may come from others: control characters are escaped, and nothing is markup."""
+
+    def __init__(self, **options: Any) -> None:
+        """Make a console; see rich.console.Console."""
+        super().__init__(markup=False, **options)
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print as Rich does; see rich.console.Console.print."""
+        super().print(*(_safe(thing) if isinstance(thing, str) else thing for thing in objects), **options)
+
+    def on_broken_pipe(self) -> None:
+        """Print no more, and go on when the reader has stopped: Rich would end the program, and a run be lost."""
+        self.quiet = True
+        with open(os.devnull, "w") as nowhere:
+            os.dup2(nowhere.fileno(), self.file.fileno())
+
+
+def _safe(text: str) -> str:
+    return "\n".join(printable(line, MAX_MESSAGE) for line in text.split("\n"))
+
+
+console = SafeConsole(stderr=True)
+"""Progress and messages."""
+stdout = SafeConsole()
+"""Results, which a shell may redirect."""
+
+BAD_INPUT = 2
+FELL = 1
+DIFFERS = 1
+INTERRUPTED = 130
+
+SIMULATE = "Simulate"
+SHOW = "Show and analyze a run"
+INSPECT = "Models, diagrams and cost"
+
+ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
+SetOption = Annotated[
+    list[str],
+    typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; can be given several times."),
+]
+LookOption = Annotated[
+    str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
+]
+
+
+def overrides_of(pairs: list[str]) -> dict[str, str]:
+    """Fields and values of --set.
+
+    Raises:
+        ParameterError: A pair is not FIELD=VALUE.
+    """
+    overrides = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key:
+            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
+        overrides[key] = value
+    return overrides
+
+
+def require_look(look: str) -> None:
+    """Raise ParameterError for an unknown look."""
+    from humanwalk.body.sdf import LOOKS
+
+    if look not in LOOKS:
+        raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
+
+
+@contextmanager
+def counted_progress(unit: str) -> Iterator[Progress]:
+    """A progress bar that counts, with elapsed and estimated remaining time."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn(f"{unit},"))
+    times = (TimeElapsedColumn(), TextColumn("elapsed,"), TimeRemainingColumn(), TextColumn("remaining"))
+    with Progress(*columns, *times, console=console, transient=True) as progress:
+        yield progress

@@ -1,0 +1,118 @@
+"""Commands that simulate: walk, reproduce, scenarios."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from humanwalk.cli.common import (
+    DIFFERS,
+    FELL,
+    INTERRUPTED,
+    SIMULATE,
+    ScenarioArgument,
+    SetOption,
+    app,
+    console,
+    overrides_of,
+    require_look,
+    stdout,
+)
+from humanwalk.quantity import ParameterError
+
+
+@app.command(
+    rich_help_panel=SIMULATE,
+    epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
+    "humanwalk walk thesis --set controller.thesis.gait.path.step_height=0.12 --set contact=hydroelastic",
+)
+def walk(
+    scenario: ScenarioArgument = "thesis",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the run; new or empty. Default: runs/SCENARIO.")
+    ] = None,
+    duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
+    set_: SetOption = [],  # noqa: B006
+    look: Annotated[
+        str | None, typer.Option(help="person or bones, instead of the scenario's; the motion is the same.")
+    ] = None,
+    follow: Annotated[
+        Path | None, typer.Option(help="Follow the joint angles of a recording (.mot, .sto, .csv) instead of the gait.")
+    ] = None,
+    mapping: Annotated[
+        Path | None, typer.Option(help="YAML file: which column of the recording is which joint, and its unit.")
+    ] = None,
+    kinematic: Annotated[bool, typer.Option("--kinematic", help="Show the recording without physics.")] = False,
+    meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, in real time.")] = False,
+    replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
+    plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
+    checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
+) -> None:
+    """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
+    from humanwalk.cli.walk import follow_overrides, walk_and_write
+
+    overrides = overrides_of(set_)
+    if follow is not None:
+        overrides |= follow_overrides(follow, mapping, kinematic)
+    elif kinematic:
+        raise ParameterError("--kinematic: no recording; allowed: with --follow FILE; name the recording")
+    elif mapping is not None:
+        raise ParameterError(f"--mapping {mapping}: no recording; allowed: with --follow FILE; name the recording")
+    if duration is not None:
+        overrides["duration"] = repr(duration)
+    if look is not None:
+        require_look(look)
+        overrides["subject.look"] = look
+    run = walk_and_write(
+        scenario,
+        overrides,
+        output,
+        live=meshcat,
+        replay=replay,
+        plots=plots,
+        console=console,
+        checkpoint_period=checkpoint,
+    )
+    end = run.summary["end"]
+    if end == "interrupted":
+        raise typer.Exit(INTERRUPTED)
+    if end != "completed":
+        raise typer.Exit(FELL)
+
+
+@app.command(rich_help_panel=SIMULATE, epilog="Example: humanwalk reproduce runs/thesis")
+def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
+    """Re-run and check that results match exactly, or within tolerance."""
+    from humanwalk.run.folder import Run
+    from humanwalk.run.reproduce import reproduce as repeat
+
+    opened = Run.open(run)
+    with console.status(f"simulating {opened.time[-1]:g} s again"):
+        result = repeat(opened)
+    for note in result.notes:
+        console.print(note, soft_wrap=True)
+    console.print(f"{run}: {result.verdict}", soft_wrap=True)
+    if not result.measures_agree:
+        raise typer.Exit(DIFFERS)
+
+
+@app.command(rich_help_panel=SIMULATE)
+def scenarios() -> None:
+    """List the scenarios that come with humanwalk."""
+    from rich.table import Table
+
+    from humanwalk.choices import CONTACTS
+    from humanwalk.quantity import tag_of
+    from humanwalk.scenario import load_scenario, shipped_scenarios
+
+    table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "description")
+    for name in shipped_scenarios():
+        loaded = load_scenario(name)
+        table.add_row(
+            name,
+            f"{loaded.duration:g}",
+            f"{loaded.controller.commanded_speed or 0.0:g}",
+            tag_of(CONTACTS, loaded.contact),
+            loaded.description,
+        )
+    stdout.print(table)
