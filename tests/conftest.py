@@ -1,12 +1,14 @@
 """What many tests look at: the reference human, as data and as a plant for kinematics."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pyarrow as pa
 import pytest
 from scipy.spatial.transform import Rotation
 
-from humanwalk.body import LEG_JOINTS
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS, PELVIS, other_side
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.control.inverse_kinematics import LegKinematics
 from humanwalk.diagrams.walker import make_walker
@@ -91,13 +93,48 @@ def joints(plant):
 @pytest.fixture(scope="session")
 def legs(plant):
     """The chain from pelvis to sole of each leg."""
-    return {side: LegKinematics(plant, "Pelvis", f"{side}Leg_Sole", names) for side, names in LEG_JOINTS.items()}
+    return {side: LegKinematics(plant, PELVIS, leg.sole, leg.chain) for side, leg in LEGS.items()}
 
 
 @pytest.fixture(scope="session")
 def gait(skeleton):
     """The thesis' walk: L 0.5 m, H 0.2 m, offset 5 cm, 1.4 m/s."""
     return WalkingGait(FootPathParameters(), skeleton.hip_half_width, SpeedRamp(1.4, 0.365))
+
+
+class Footstep(NamedTuple):
+    """One stance of one foot: position over ground (3,) [m] and times [s]; lift_off is inf if it never happens."""
+
+    side: str
+    position: np.ndarray
+    touchdown: float
+    lift_off: float
+
+
+def footsteps_of(gait, until):
+    """The stances of a `WalkingGait` that begin before a time [s], those of standing first: an independent oracle."""
+    p, time = gait.parameters, gait.ramp.time_at
+    swing, stand = gait.first_swing, other_side(gait.first_swing)
+
+    def at(x, side):
+        return np.array([x, gait.hip_half_width if side == "Left" else -gait.hip_half_width, 0.0])
+
+    steps = [
+        Footstep(swing, at(0.0, swing), 0.0, 0.0),
+        Footstep(stand, at(0.0, stand), 0.0, time(p.step_length / 2)),
+    ]
+    walked, side = gait.start_distance, swing
+    while time(walked) < until:
+        place = at((len(steps) - 1) * p.walked_step, side)
+        steps.append(Footstep(side, place, time(walked), time(walked + p.step_length)))
+        walked, side = walked + p.walked_step, other_side(side)
+    return steps
+
+
+@pytest.fixture(scope="session")
+def footsteps():
+    """The stances of a gait, see `footsteps_of`."""
+    return footsteps_of
 
 
 @pytest.fixture(scope="session")

@@ -31,13 +31,11 @@ LABELS = {("view/plots/gait_cycle.py", "Pelvis")}
 
 PENDING: dict[str, dict[str, str]] = {
     "name": {
-        "h3": "gait/arm_swing.py",
         "h5": "measures/human_likeness.py run/monitor.py",
         "h6": "view/plots/joints.py view/plots/thesis_figures.py",
     },
     "size": {},
     "array": {
-        "h3": "gait/thesis_path.py",
         "h5": "measures/effort.py measures/human_likeness.py measures/summary.py",
         "h6": "view/plots/drawing.py view/plots/ground.py view/plots/thesis_figures.py",
     },

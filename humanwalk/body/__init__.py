@@ -5,7 +5,8 @@ from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.sdf import MODEL_NAME, to_sdf
 from humanwalk.body.shapes import Box, Cylinder
-from humanwalk.body.skeleton import SIDES, Joint, Segment, Side, Skeleton, Weld
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
+from humanwalk.sides import SIDES, Side
 
 LEG_JOINTS = {side: leg.chain for side, leg in LEGS.items()}
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body.anatomy import REFERENCE_STATURE
-from humanwalk.body.skeleton import SIDES, Side, Skeleton, Vector3
+from humanwalk.body.skeleton import Skeleton, Vector3
 from humanwalk.numerics import Array
+from humanwalk.sides import SIDES, Side
 
 POINT_SET = "_point_"
 """Part of the name of every collision shape of the point-contact set."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from humanwalk.body.anatomy import human
-from humanwalk.body.skeleton import SIDES, Side, Vector3
+from humanwalk.body.skeleton import Vector3
+from humanwalk.sides import SIDES, Side
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ HEAD = "Head"
 
 
 def other_side(side: Side) -> Side:
-    """Return the opposite side."""
+    """The other side of the body."""
     return "Left" if side == "Right" else "Right"
 
 

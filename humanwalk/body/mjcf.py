@@ -9,9 +9,10 @@ import xml.etree.ElementTree as ET
 from humanwalk.body.contact import FRICTION, RELAXATION_TIME, contact_spheres
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
-from humanwalk.body.skeleton import SIDES, Joint, Segment, Skeleton
+from humanwalk.body.skeleton import Joint, Segment, Skeleton
 from humanwalk.body.visuals import Visual
 from humanwalk.quantity import GRAVITY
+from humanwalk.sides import SIDES
 
 
 def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:

@@ -7,8 +7,8 @@ gait2392). Joints absent from that model keep their names. The axes of OpenSim's
 import numpy as np
 
 from humanwalk.body.limbs import SPINE_PITCH_JOINTS, SPINE_ROLL_JOINTS, SPINE_YAW_JOINTS
-from humanwalk.body.skeleton import SIDES
 from humanwalk.numerics import Array
+from humanwalk.sides import SIDES
 
 _RIGHT_AND_LEFT = {
     "LegFemurMotion": ("hip_flexion", 1.0),

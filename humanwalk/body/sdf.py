@@ -23,8 +23,9 @@ from humanwalk.body.contact import (
     contact_spheres,
 )
 from humanwalk.body.model_text import number, numbers
-from humanwalk.body.skeleton import SIDES, Joint, Segment, Skeleton, Vector3, Weld
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
 from humanwalk.body.visuals import Visual, visuals
+from humanwalk.sides import SIDES
 
 MODEL_NAME = "human"
 SDF_VERSION = "1.9"

@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
@@ -18,8 +17,6 @@ from humanwalk.body.shapes import Shape
 from humanwalk.numerics import Array
 from humanwalk.quantity import require_in_range
 
-Side = Literal["Right", "Left"]
-SIDES: tuple[Side, Side] = ("Right", "Left")
 Vector3 = tuple[float, float, float]
 
 MASS_RANGE_KG = (30.0, 200.0)

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from humanwalk.body.anatomy import REFERENCE_STATURE, human
-from humanwalk.body.skeleton import Side, Skeleton, Vector3
+from humanwalk.body.skeleton import Skeleton, Vector3
+from humanwalk.sides import Side
 
 Color = tuple[float, float, float]
 Primitive = Literal["ellipsoid", "capsule", "cylinder", "box"]

@@ -19,7 +19,6 @@ from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.joint_gains import JointGains, joint_gains
 from humanwalk.control.reach import require_reachable
-from humanwalk.gait.arm_swing import ArmSwingParameters, arm_joints
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
@@ -32,6 +31,7 @@ from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 from humanwalk.systems.posture_interpolator import PostureInterpolator
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 from humanwalk.terrain import Terrain
+from humanwalk.walking.arm_swing import ArmSwingParameters, arm_joints
 
 
 @dataclass(frozen=True)

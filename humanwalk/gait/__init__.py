@@ -1,4 +1,1 @@
-"""Where the feet should be and when: splines, the thesis' foot paths, arc length, phases, steps.
-
-Knows nothing of bodies, control or Drake.
-"""
+"""Desired motion of the feet in the thesis' walk: splines, foot paths, arc length, phases; no bodies, no Drake."""

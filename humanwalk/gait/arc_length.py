@@ -1,6 +1,6 @@
-"""Exact arc-length parametrisation of a spline.
+"""Arc-length parametrization of a spline.
 
-The thesis resamples its curves with a greedy rule that walks 9 to 10 % too slowly and may lose the
+The thesis resamples its curves with a greedy rule that gives 9 to 10 % less than the desired speed and can leave the
 curve (erratum E16); here the arc length is integrated and inverted to rounding.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from humanwalk.gait.splines import Spline
+from humanwalk.gait.splines import CubicHermite
 from humanwalk.numerics import Array
 
 _PANELS_PER_SEGMENT = 8
@@ -17,36 +17,25 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 class ArcLength:
-    """A spline walked by its arc length s in [0, length].
+    """A spline as a function of its arc length s in [0, length], in the unit of the control points.
 
-    s has the unit of the spline's control points. Lengths come from 16-point Gauss-Legendre
-    integration on eighths of a segment, the inverse from Newton steps kept in a bracket.
+    Lengths come from 16-point Gauss-Legendre integration on eighths of a segment, the inverse from bracketed Newton
+    steps.
     """
 
-    def __init__(self, spline: Spline) -> None:
+    def __init__(self, spline: CubicHermite) -> None:
         self.spline = spline
         panels = spline.segments * _PANELS_PER_SEGMENT
         self._u_of_panel = np.linspace(0.0, spline.segments, panels + 1)
         lengths = self._integral(self._u_of_panel[:-1], self._u_of_panel[1:])
         self._s_of_panel = np.concatenate([[0.0], np.cumsum(lengths)])
         if self.length <= 0.0:
-            raise ValueError("control_points make a curve of length 0; it must be > 0: give points that differ")
+            raise ValueError("control_points make a curve of length 0; it must be > 0: give distinct points")
 
     @property
     def length(self) -> float:
-        """Length of the whole curve."""
+        """Length of the curve."""
         return float(self._s_of_panel[-1])
-
-    def length_to(self, u: npt.ArrayLike) -> Array:
-        """Arc length from the start to the global parameter u, shape of u."""
-        values = np.asarray(u, dtype=np.float64)
-        panel = np.clip(
-            np.searchsorted(self._u_of_panel, values, side="right") - 1,
-            0,
-            len(self._u_of_panel) - 2,
-        )
-        start = self._u_of_panel[panel]
-        return np.asarray(self._s_of_panel[panel] + self._integral(start, values))
 
     def parameter_at(self, s: npt.ArrayLike) -> Array:
         """Global parameter u at which the arc length is s, shape of s.
@@ -58,8 +47,7 @@ class ArcLength:
         inside = (target >= -slack) & (target <= self.length + slack)
         if not np.all(inside):
             raise ValueError(
-                f"s = {target[~inside].flat[0]:g} is outside [0, {self.length:g}]: "
-                "s is the distance walked along the curve"
+                f"s = {target[~inside].flat[0]:g} is outside [0, {self.length:g}]: s is the distance along the curve"
             )
         target = np.clip(target, 0.0, self.length)
         panel = np.clip(
@@ -70,8 +58,8 @@ class ArcLength:
         start, s_start = self._u_of_panel[panel], self._s_of_panel[panel]
         low, high = start, self._u_of_panel[panel + 1]
         span = self._s_of_panel[panel + 1] - s_start
-        share = np.divide(target - s_start, span, out=np.zeros_like(target), where=span > 0.0)
-        u = low + share * (high - low)
+        fraction = np.divide(target - s_start, span, out=np.zeros_like(target), where=span > 0.0)
+        u = low + fraction * (high - low)
         for _ in range(60):
             error = s_start + self._integral(start, u) - target
             if np.all(np.abs(error) <= 4e-16 * self.length):
@@ -86,15 +74,10 @@ class ArcLength:
         """Points at arc length s: shape (..., d)."""
         return self.spline.position(self.parameter_at(s))
 
-    def tangent(self, s: npt.ArrayLike) -> Array:
-        """Unit tangents d position / d s: shape (..., d)."""
-        direction = self.spline.derivative(self.parameter_at(s))
-        return np.asarray(direction / np.linalg.norm(direction, axis=-1, keepdims=True))
-
     def resample(self, ds: float) -> Array:
         """Points at s = 0, ds, 2 ds, ... up to the end: shape (n, d).
 
-        With ds = speed * time step this is the walk at constant speed that the thesis meant (E16).
+        With ds = speed * time step this is the constant speed that the thesis intends (E16).
         Raises ValueError unless 0 < ds <= length.
         """
         if not 0.0 < ds <= self.length:

@@ -1,4 +1,4 @@
-"""Walking speed: ramped linearly from zero, then constant (thesis 4.2.3, erratum E26)."""
+"""Walking speed: a linear ramp from zero, then constant (thesis 4.2.3, erratum E26)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from humanwalk.quantity import check, quantity
 class SpeedRamp:
     """Speed of the pelvis over time: 0 before t = 0, linear up to `duration`, then `speed`.
 
-    speed: [m/s], 0..3; the thesis walks at 1.4. 0 stands for ever.
-    duration: [s], 0..60. 0 is allowed and starts at full speed, with a jump of the velocities.
+    speed: [m/s], 0..3; the thesis has 1.4; with 0 the body stands.
+    duration: [s], 0..60. 0 starts at full speed, with a jump of the velocities.
     """
 
     speed: float = quantity(1.4, "m/s", 0.0, 3.0)
@@ -23,7 +23,7 @@ class SpeedRamp:
         check(self)
 
     def distance(self, t: float) -> float:
-        """Distance walked until t [s]: [m]."""
+        """Distance at t [s]: [m]."""
         if t <= 0.0:
             return 0.0
         if t < self.duration:
@@ -41,7 +41,7 @@ class SpeedRamp:
         return self.speed / self.duration if 0.0 <= t < self.duration else 0.0
 
     def time_at(self, distance: float) -> float:
-        """Time [s] at which `distance` >= 0 [m] has been walked; inf if never."""
+        """Time [s] at which the distance [m] is reached; inf if never."""
         if distance <= 0.0:
             return 0.0
         if self.speed == 0.0:

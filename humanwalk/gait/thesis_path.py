@@ -1,20 +1,18 @@
-"""The two foot paths of the thesis as its programs make them, for comparison and for plots.
+"""The two foot paths of the thesis' programs, for comparison and for plots.
 
-Appendix A ("forward", the leg that swings first) and appendix B ("backward", the leg that stands
-first). The code is followed where the tables differ from it (erratum E14). The walk itself uses
-`foot_cycle`, since these two never keep step (E26).
+Appendix A ("forward", the leg that swings first) and appendix B ("backward", the leg that stands first). Where the
+printed tables differ from the programs, the programs are followed (erratum E14). The walk itself uses `foot_cycle`,
+since the phases of these two drift apart (E26).
 
-Lengths: any unit, the same in and out; the thesis uses centimetres (L 50, H 20, offset 5). Points
-are (x, y) as in the thesis: x forward, y up, y = 0 the ground while walking.
+Lengths have any unit, the same in and out; the thesis uses centimeters (L 50, H 20, offset 5). Points are (x, y) as in
+the thesis: x forward, y up, y = 0 the ground in walking.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from humanwalk.gait.splines import CubicHermite
 from humanwalk.numerics import Array
@@ -23,7 +21,7 @@ LegPath = Literal["forward", "backward"]
 
 
 def forward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
-    """Control points of appendix A: 3 of the start and 13 a cycle, shape (3 + 13 cycles, 2)."""
+    """Control points of appendix A: 3 of the start and 13 per cycle, shape (3 + 13 cycles, 2)."""
     L, H = step_length, step_height
     C = L / 18
     start = [(L / 2, -offset), (3 * L / 4, H), (L, 2 * L / 50)]
@@ -46,7 +44,7 @@ def forward_control_points(step_length: float, step_height: float, offset: float
 
 
 def backward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
-    """Control points of appendix B: 2 of the start, 12 a cycle and the first of the next one.
+    """Control points of appendix B: 2 of the start, 12 per cycle and the first of the next cycle.
 
     Shape (3 + 12 cycles, 2).
     """
@@ -69,34 +67,11 @@ def backward_control_points(step_length: float, step_height: float, offset: floa
     return np.array(start + cycle * cycles + cycle[:1], dtype=np.float64)
 
 
-@dataclass(frozen=True)
-class DenseCurve:
-    """A foot path sampled segment by segment, both ends of every segment included.
+def thesis_path(path: LegPath, step_length: float, step_height: float, offset: float) -> CubicHermite:
+    """Foot path of appendix A or B with two cycles (Figures 4.2 to 4.7).
 
-    segment: index from 0, (n,); u: parameter within the segment, (n,); points: (n, 2);
-    distance: sum of the chords from the start, (n,).
-    """
-
-    segment: npt.NDArray[np.int64]
-    u: Array
-    points: Array
-    distance: Array
-
-
-def thesis_curve(path: LegPath, step_length: float, step_height: float, offset: float, du: float = 0.01) -> DenseCurve:
-    """Dense curve of appendix A or B with two cycles (Figures 4.2 to 4.7).
-
-    The forward program never reaches its 29th point: the curve ends at the 28th, with the tangent
-    of an end (E28). du divides 1. Repeated points at the joints are the programs' own.
+    The forward program never reaches its 29th point: the curve ends at the 28th, with the tangent of an end (E28).
     """
     if path == "forward":
-        control_points = forward_control_points(step_length, step_height, offset)[:-1]
-    else:
-        control_points = backward_control_points(step_length, step_height, offset)
-    spline = CubicHermite(control_points)
-    steps = np.linspace(0.0, 1.0, round(1.0 / du) + 1)
-    segment = np.repeat(np.arange(spline.segments), len(steps))
-    u = np.tile(steps, spline.segments)
-    points = spline.position(segment + u)
-    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return DenseCurve(segment, u, points, np.concatenate([[0.0], np.cumsum(chords)]))
+        return CubicHermite(forward_control_points(step_length, step_height, offset)[:-1])
+    return CubicHermite(backward_control_points(step_length, step_height, offset))

@@ -1,17 +1,13 @@
-"""Where both feet and the pelvis should be, at any time, from standing into steady walking.
+"""Desired motion of both feet and the pelvis over time, from standing into steady walking.
 
-Everything but the speed ramp is a function of the distance d that the pelvis has walked, so the
-path over ground is the same at every speed. The foot that stands first goes back under the hip;
-the other makes a start swing and lands exactly half a cycle behind it (errata E26, E32).
+Everything but the speed ramp is a function of the distance d that the pelvis has walked, so the path over ground is the
+same at every speed. The foot that stands first moves back under the hip; the other makes a start swing and lands
+exactly half a cycle behind it (errata E26, E32).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from humanwalk.gait.foot_cycle import (
     FootCycle,
@@ -21,25 +17,22 @@ from humanwalk.gait.foot_cycle import (
     swing_hump,
 )
 from humanwalk.gait.speed_ramp import SpeedRamp
-from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import ParameterError, require_in_range
-
-Side = Literal["Right", "Left"]
+from humanwalk.sides import SIDES, Side
 
 
 class FootTarget(NamedTuple):
-    """What one sole should do. Axes of the pelvis frame P: x forward, y left, z up.
+    """Desired motion of one sole. Axes of the pelvis frame P: x forward, y left, z up.
 
-    position: sole (3,) [m]; x and y from the middle between the hips, z from the ground as it is
-        while walking: -offset in standing, 0 in the stance of walking (thesis 4.2.3, E32).
+    position: sole (3,) [m]; x and y from the middle between the hips, z from the ground in walking: -offset in
+        standing, 0 in the stance of walking (thesis 4.2.3, E32).
     velocity: its time derivative (3,) [m/s].
     height: of the sole above the ground [m], >= 0.
     height_rate: its time derivative [m/s].
     pitch: of the sole about y, toes down positive [rad].
     pitch_rate: its time derivative [rad/s].
-    phase: 0 at touchdown, below duty_factor in stance, modulo 1; of the foot that swings first it
-        is nominal during the start swing.
+    phase: 0 at touchdown, below duty_factor in stance, modulo 1; nominal during the start swing.
     in_stance: whether the foot is on the ground.
     """
 
@@ -54,10 +47,10 @@ class FootTarget(NamedTuple):
 
 
 class PelvisTarget(NamedTuple):
-    """What the pelvis should do.
+    """Desired motion of the pelvis.
 
-    distance, speed, acceleration: walked forward from standing [m, m/s, m/s^2].
-    drop, drop_rate, drop_acceleration: how much lower than in standing [m, m/s, m/s^2].
+    distance, speed, acceleration: forward from standing [m, m/s, m/s^2].
+    drop, drop_rate, drop_acceleration: downward from standing [m, m/s, m/s^2].
     """
 
     distance: float
@@ -77,32 +70,17 @@ class GaitTarget(NamedTuple):
     left: FootTarget
 
 
-@dataclass(frozen=True)
-class Footstep:
-    """One stance of one foot: where over ground (3,) [m] (x from the start) and when [s].
-
-    touchdown is 0 for the two feet that stand at the start; lift_off is inf if the speed never
-    gets there.
-    """
-
-    side: Side
-    position: Array
-    touchdown: float
-    lift_off: float
-
-
 class WalkingGait:
     """Foot and pelvis targets of a walk along +x that starts from standing at t = 0.
 
     Args:
         parameters: foot path.
-        hip_half_width: half the distance between the hips [m], 0.02..0.3; the side of each foot
+        hip_half_width: half the distance between the hips [m], 0.02..0.3, which is the lateral position of each foot
             (E22: both programs have 0).
         ramp: speed over time.
-        first_swing: side that swings first.
+        first_swing: side of the foot that swings first.
 
-    Before t = 0 the man stands. Whether the legs can reach is for the inverse kinematics to say;
-    see `minimum_offset`.
+    Before t = 0 the body stands. The reach of the legs is not checked here, see `minimum_offset`.
     """
 
     def __init__(
@@ -113,7 +91,7 @@ class WalkingGait:
         first_swing: Side = "Right",
     ) -> None:
         require_in_range("hip_half_width", hip_half_width, "m", 0.02, 0.3)
-        if first_swing not in ("Right", "Left"):
+        if first_swing not in SIDES:
             raise ParameterError(
                 f'first_swing: {first_swing!r} is unknown; allowed: "Right" or "Left"; name the leg that swings first'
             )
@@ -131,7 +109,7 @@ class WalkingGait:
         return self.ramp.time_at(self.start_distance)
 
     def target(self, t: float) -> GaitTarget:
-        """Targets at t [s]; every rate is the exact time derivative of its twin."""
+        """Targets at t [s]; every rate is the exact time derivative of its value."""
         pelvis = self.pelvis(t)
         return GaitTarget(t, pelvis, self._foot("Right", pelvis), self._foot("Left", pelvis))
 
@@ -140,11 +118,7 @@ class WalkingGait:
 
         It sinks by the offset while the first foot swings, along a quintic of the distance.
         """
-        d, speed, acceleration = (
-            self.ramp.distance(t),
-            self.ramp.speed_at(t),
-            self.ramp.acceleration(t),
-        )
+        d, speed, acceleration = self.ramp.distance(t), self.ramp.speed_at(t), self.ramp.acceleration(t)
         d0, offset = self.start_distance, self.parameters.offset
         if d >= d0:
             return PelvisTarget(d, speed, acceleration, offset, 0.0, 0.0)
@@ -166,25 +140,6 @@ class WalkingGait:
     def phase(self, side: Side, t: float) -> float:
         """Phase of a foot at t [s]; see `FootTarget`."""
         return self._phase(side, self.ramp.distance(t))
-
-    def footsteps(self, until: float) -> list[Footstep]:
-        """The stances that begin before `until` [s], in the order of touchdown.
-
-        The first two are the standing feet, the one that swings first leading.
-        """
-        return list(self._footsteps(until))
-
-    def _footsteps(self, until: float) -> Iterator[Footstep]:
-        p = self.parameters
-        swing, stand = self.first_swing, self._other(self.first_swing)
-        time = self.ramp.time_at
-        yield Footstep(swing, np.array([0.0, self._y(swing), 0.0]), 0.0, 0.0)
-        yield Footstep(stand, np.array([0.0, self._y(stand), 0.0]), 0.0, time(p.step_length / 2))
-        count, side, walked = 1, swing, self.start_distance
-        while time(walked) < until:
-            place = np.array([count * p.walked_step, self._y(side), 0.0])
-            yield Footstep(side, place, time(walked), time(walked + p.step_length))
-            count, side, walked = count + 1, self._other(side), walked + p.walked_step
 
     def _foot(self, side: Side, pelvis: PelvisTarget) -> FootTarget:
         d = pelvis.distance
@@ -223,13 +178,9 @@ class WalkingGait:
         return self._cycle.in_stance(self._phase(side, d))
 
     def _phase(self, side: Side, d: float) -> float:
-        # The foot that stands first starts half-way through its stance.
+        # The foot that stands first starts halfway through its stance.
         cycles = (0.5 * self.parameters.step_length + d) / self.parameters.walked_stride
         return (cycles - 0.5 if side == self.first_swing else cycles) % 1.0
 
     def _y(self, side: Side) -> float:
         return self.hip_half_width if side == "Left" else -self.hip_half_width
-
-    @staticmethod
-    def _other(side: Side) -> Side:
-        return "Left" if side == "Right" else "Right"

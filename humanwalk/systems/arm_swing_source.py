@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from humanwalk.gait.arm_swing import ArmSwingParameters, arm_joints, arm_swing
 from humanwalk.gait.walking_gait import WalkingGait
+from humanwalk.walking.arm_swing import ArmSwingParameters, arm_joints, arm_swing
 
 
 class ArmSwingSource(LeafSystem):

@@ -20,7 +20,7 @@ from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 
 GRAVITY = 9.81
 SPEED = 1.4
-STRIDE_TIME = FootPathParameters().stride_time(SPEED)
+STRIDE_TIME = FootPathParameters().walked_stride / SPEED
 SIDES = ("right", "left")
 
 

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body.limbs import ARMS
-from humanwalk.gait.arm_swing import ArmSwingParameters
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.systems.arm_swing_source import ArmSwingSource
+from humanwalk.walking.arm_swing import ArmSwingParameters
 
 MOVING = {joint for arm in ARMS.values() for joint in (arm.shoulder_flexion, arm.elbow)}
 times = st.floats(0.0, 5.0)
@@ -58,8 +58,8 @@ def test_angles_stay_within_the_joint_ranges(source, joints, t):
     assert np.all((joints.lower <= angles) & (angles <= joints.upper))
 
 
-def test_an_arm_is_furthest_back_at_touchdown_of_its_side(source, joints, gait):
-    touchdown = next(s.touchdown for s in gait.footsteps(6.0) if s.side == "Right" and s.touchdown > 2.0)
+def test_an_arm_is_furthest_back_at_touchdown_of_its_side(source, joints, gait, footsteps):
+    touchdown = next(s.touchdown for s in footsteps(gait, 6.0) if s.side == "Right" and s.touchdown > 2.0)
     right, left = (joints.names.index(arm.shoulder_flexion) for arm in ARMS.values())
     angles, rates = posture_of(source, touchdown)
     amplitude = ArmSwingParameters().shoulder_amplitude

@@ -73,7 +73,7 @@ def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at, t):
 
 @settings(max_examples=200)
 @given(t=times)
-def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, gait, t):
+def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, footsteps, gait, t):
     here = at(t)
     for i, side in enumerate(SIDES):
         X_WS = here["X_WP"] @ here[f"X_P{side[0]}s"]
@@ -81,7 +81,7 @@ def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, gait, t):
             assert X_WS.translation()[2] > -1e-9
             continue
         landed = max(
-            (s for s in gait.footsteps(t + 1.0) if s.side == side and s.touchdown <= t + 1e-9),
+            (s for s in footsteps(gait, t + 1.0) if s.side == side and s.touchdown <= t + 1e-9),
             key=lambda s: s.touchdown,
         )
         np.testing.assert_allclose(X_WS.translation(), landed.position, atol=1e-7)

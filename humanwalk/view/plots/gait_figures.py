@@ -13,13 +13,13 @@ from humanwalk.body import Side
 from humanwalk.files import make_folder
 from humanwalk.gait.arc_length import ArcLength
 from humanwalk.gait.splines import CubicHermite
-from humanwalk.gait.thesis_path import LegPath, backward_control_points, forward_control_points
+from humanwalk.gait.thesis_path import LegPath, thesis_path
+from humanwalk.numerics import Array
 from humanwalk.view.plots.drawing import (
     INK,
     REFERENCE,
     SIDE,
     TICK_SIZE,
-    Array,
     curve,
     label,
     legend,
@@ -120,14 +120,12 @@ def write_gait_figures(folder: Path) -> list[Path]:
 
 
 def _control_points(path: LegPath) -> Array:
-    if path == "forward":
-        # The program never reaches its 29th point (E28).
-        return forward_control_points(STEP_LENGTH_CM, STEP_HEIGHT_CM, OFFSET_CM)[:-1]
-    return backward_control_points(STEP_LENGTH_CM, STEP_HEIGHT_CM, OFFSET_CM)
+    spline = _spline(path)
+    return spline.position(np.arange(spline.segments + 1))
 
 
 def _spline(path: LegPath) -> CubicHermite:
-    return CubicHermite(_control_points(path))
+    return thesis_path(path, STEP_LENGTH_CM, STEP_HEIGHT_CM, OFFSET_CM)
 
 
 def _draw_segments(axes: Axes, path: LegPath, first: int, last: int, **style: Any) -> None:
