@@ -11,13 +11,13 @@ from pydrake.math import RigidTransform
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.body.limbs import LEGS, PELVIS, Leg
 from humanwalk.body.plant import Subject, kinematics_plant
-from humanwalk.body.skeleton import SIDES, Side
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.signals import matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import parse_scenario
+from humanwalk.sides import SIDES, Side
 
 pytestmark = pytest.mark.slow
 
