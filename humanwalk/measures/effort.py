@@ -24,7 +24,7 @@ def joint_names(signals: pa.Table) -> list[str]:
 
 
 def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:
-    """Mechanical cost of transport: time integral of sum |tau w| over m g d, nothing regained.
+    """Mechanical cost of transport: time integral of sum |torque x rate| over m g d, without recovery of negative work.
 
     Args:
         signals: the record.

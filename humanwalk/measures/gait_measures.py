@@ -129,7 +129,7 @@ def stride_speed(signals: pa.Table, feet: dict[Side, FootEvents]) -> float | Non
 
 
 def cop_excursions(signals: pa.Table, side: Side, foot: FootEvents, axis: str) -> Array:
-    """Range of the centre of pressure under the foot over every whole stance, along x or y [m]."""
+    """Range of the center of pressure under the foot in every whole stance, along x or y [m]."""
     cop = signals[f"{side.lower()}_foot.cop_{axis}_m"].to_numpy()
     loaded = signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
     stances = [cop[a:b][loaded[a:b]] for a, b in foot.stances]

@@ -1,8 +1,8 @@
-"""A walk beside real people: its angles over the gait cycle and the measures of its steps, stride by stride.
+"""Comparison with human gait, stride by stride: angles over the gait cycle, measures of steps, forces and effort.
 
 People's angles are those of Schwartz, Rozumalski, Trost (2008), "The effect of walking speed on the gait of typically
-developing children", J. Biomech. 41(8) 1639-1650, at the speed of their choice. Of other measures people's values are
-given where a source is known, and none where it is not.
+developing children", J. Biomech. 41(8) 1639-1650, at self-selected speed. Other measures have
+human values where a source is known.
 """
 
 import csv
@@ -13,9 +13,8 @@ from importlib.resources import files
 from operator import attrgetter
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, find_peaks, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body import SIDES, Side
@@ -32,25 +31,25 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.numerics import Array
+from humanwalk.numerics import Array, Indices
 from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import Scenario
 
 CYCLE = np.linspace(0.0, 100.0, 101)
-"""Where in a gait cycle curves are compared [%]."""
+"""Points of the gait cycle at which curves are compared [%]."""
 
 TERMINAL_STANCE = (31.0, 50.0)
-"""From heel rise to the landing of the other foot [% of the gait cycle]: Perry and Burnfield (2010), chapter 2."""
+"""From heel rise to touchdown of the other foot [% of the gait cycle]: Perry and Burnfield (2010), chapter 2."""
 
 FORCE_CUTOFF_HZ = 15.0
 """The ground force of walking has 99 % of its power below: Antonsson and Mann (1985), J. Biomech. 18(1) 39-47."""
 
-LEAST_DIP = 0.05
-"""Two humps have a dip between them of at least this share of body weight."""
+MIN_VALLEY = 0.05
+"""Smallest depth of a valley beside a peak of the vertical force [body weights]."""
 
-FEWEST_STRIDES = 2
-WIDEST_ANGLE = np.radians(20.0)
-"""Strides of each leg that a comparison needs, and how far from straight ahead they may go."""
+MIN_STRIDES = 2
+MAX_HEADING = np.radians(20.0)
+"""Strides of each leg that a comparison needs, and their largest angle from straight ahead [rad]."""
 
 PEOPLE_DATA = "models/normative_gait/schwartz2008_free_angles.csv"
 PERRY = "Perry, Burnfield (2010), Gait Analysis"
@@ -59,14 +58,14 @@ DONELAN = "Donelan, Kram, Kuo (2001), Proc. R. Soc. B 268:1985"
 SCHWARTZ = "Schwartz et al. (2008)"
 
 PREFERRED_STEP_WIDTH = 0.13
-"""Of people, per leg length; abstract of Donelan, Kram, Kuo (2001)."""
+"""Human, per leg length; abstract of Donelan, Kram, Kuo (2001)."""
 
 COM_EXCURSIONS = {
     "vertical": ((2.74e-2, 0.52e-2), (4.83e-2, 0.92e-2)),
     "lateral": ((6.99e-2, 1.34e-2), (3.85e-2, 1.41e-2)),
 }
 COM_SPEEDS = (0.7, 1.6)
-"""People's mean and standard deviation at two speeds [m], and the speeds [m/s]; abstract of Orendurff et al. (2004)."""
+"""Human mean and standard deviation at two speeds [m], and the speeds [m/s]; abstract of Orendurff et al. (2004)."""
 
 
 JOINTS: dict[str, Callable[[Leg], str]] = {
@@ -98,9 +97,9 @@ class Angle:
     """An angle that is compared with people's.
 
     Attributes:
-        positive: its positive sense, in a word.
-        people: the quantity of people's data.
-        of: the angle of a record as one leg sees it [deg], shape (rows,).
+        positive: its positive sense.
+        people: the quantity of the human data.
+        of: the angle of a record relative to one leg [deg], shape (rows,).
     """
 
     positive: str
@@ -118,8 +117,8 @@ ANGLES = {
 }
 """Every angle by name. The pelvis turns by rotation, obliquity, tilt in this order: Baker (2001), Gait Posture 13:1-6.
 
-Tilt, and with it hip flexion, is counted from different zeros: people's pelvis plane leans some 10 degrees forward in
-upright standing, where this model's pelvis is level. `Likeness.difference` has that, `Likeness.correlation` has not.
+Tilt, and with it hip flexion, has another zero: the human pelvic plane tilts some 10 degrees forward in upright
+standing, where this model's pelvis is level. `Likeness.difference` contains this offset, `Likeness.correlation` not.
 """
 
 
@@ -133,7 +132,7 @@ def people(quantity: str) -> tuple[Array, Array, Array]:
 
 
 def over_strides(foot: FootEvents, values: Array) -> Array:
-    """A signal over every whole stride of a leg at the places of CYCLE, shape (strides, 101)."""
+    """A signal over every whole stride of a leg at the points of CYCLE, shape (strides, 101)."""
     time = foot.time
     strides = [np.interp(time[a] + CYCLE / 100.0 * (time[b] - time[a]), time, values) for a, b in foot.strides]
     return np.array(strides).reshape(-1, CYCLE.size)
@@ -141,13 +140,13 @@ def over_strides(foot: FootEvents, values: Array) -> Array:
 
 @dataclass(frozen=True)
 class Likeness:
-    """How like people's mean curve an angle is; one number a stride, shape (strides,).
+    """Agreement of an angle with the human mean curve, one number per stride, shape (strides,).
 
     Attributes:
-        correlation: Pearson's, over the cycle; not a number where the angle stays the same.
-        difference: mean of the angle minus people's [deg].
-        rms: root mean square of the angle minus people's [deg].
-        inside: share of the cycle within one standard deviation of people's mean.
+        correlation: Pearson's, over the cycle; NaN where the angle is constant.
+        difference: mean of the angle minus the human mean [deg].
+        rms: root mean square of the angle minus the human mean [deg].
+        inside: share of the cycle within one standard deviation of the human mean.
     """
 
     correlation: Array
@@ -173,7 +172,7 @@ class Likeness:
 
 @dataclass(frozen=True)
 class People:
-    """People's values of a measure, from low to high (of a mean and standard deviation: one to both sides)."""
+    """Human range of a measure; for a mean with standard deviation, one standard deviation to either side."""
 
     low: float
     high: float
@@ -182,12 +181,13 @@ class People:
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of a walk beside people's.
+    """A measure of a walk with its human range.
 
     Attributes:
-        name, unit: what it is; "" for a pure number, BW for body weights.
-        values: one for each step, stride or stance of both legs; a single one for a measure of the whole walk.
-        people: None where no source is known.
+        name: of the measure.
+        unit: "" for a pure number, BW for body weights.
+        values: one per step, stride or stance of both legs, or one for the whole walk.
+        people: the human range, None where no source is known.
     """
 
     name: str
@@ -198,12 +198,12 @@ class Measure:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A walk beside people.
+    """A walk compared with human gait.
 
     Attributes:
-        strides: how many of each leg were compared.
-        curves: of every angle in ANGLES the likeness of each leg's strides.
-        measures: of steps, ground force, centre of mass and effort.
+        strides: their number, by leg.
+        curves: agreement of each leg's strides by name of the angle in ANGLES.
+        measures: of steps, ground force, center of mass and effort.
     """
 
     strides: Mapping[Side, int]
@@ -212,10 +212,10 @@ class Comparison:
 
 
 def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
-    """Compare the steady walk of a record with people.
+    """Compare the steady part of a walk with human gait.
 
     Raises:
-        ParameterError: fewer than FEWEST_STRIDES strides of a leg, or a way that does not lead straight ahead.
+        ParameterError: fewer than MIN_STRIDES strides of a leg, or a walk that does not go straight ahead.
     """
     begin = scenario.controller.steady_from(scenario.subject)
     feet = {side: events_of(signals, side, begin) for side in SIDES}
@@ -232,43 +232,48 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
 
 
 def late_stance_knee(strides: Array) -> Array:
-    """Least flexion in terminal stance, of knee flexion over strides [deg], shape (strides, 101) -> (strides,)."""
+    """Least knee flexion in terminal stance [deg], from knee flexion over strides, (strides, 101) -> (strides,)."""
     begin, end = TERMINAL_STANCE
     least: Array = strides[:, (begin <= CYCLE) & (end >= CYCLE)].min(axis=1)
     return least
 
 
-def force_humps(signals: pa.Table, side: Side, foot: FootEvents, weight: float) -> Array:
-    """Vertical force of every whole stance: first hump, dip and second hump per body weight, shape (stances, 3).
-
-    Humps are the greatest force in either half of the stance, the dip the least between them, below FORCE_CUTOFF_HZ:
-    the impact of the heel is no hump.
+def vertical_force(signals: pa.Table, side: Side, weight: float) -> Array:
+    """Vertical force on a foot below FORCE_CUTOFF_HZ, without the impact of the heel [body weights], shape (rows,).
 
     Args:
         weight: of the body [N].
     """
-    force = signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / weight
-    rate = 1.0 / float(np.median(np.diff(foot.time)))
+    force: Array = signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / weight
+    rate = 1.0 / float(np.median(np.diff(signals[TIME].to_numpy())))
     # A record of fewer than two samples per period of the cutoff holds nothing above it.
     if rate > 2.0 * FORCE_CUTOFF_HZ:
         force = sosfiltfilt(butter(2, FORCE_CUTOFF_HZ, fs=rate, output="sos"), force)
-    humps = []
+    return force
+
+
+def force_peaks(force: Array, foot: FootEvents) -> Array:
+    """First peak, valley and second peak of a force over every whole stance, shape (rows,) -> (stances, 3).
+
+    The peaks are the greatest values in either half of the stance, the valley is the least value between them.
+    """
+    peaks = []
     for a, b in foot.stances:
         middle = a + max(1, (b - a) // 2)
         first, second = a + int(force[a:middle].argmax()), middle + int(force[middle:b].argmax())
-        humps.append((force[first], force[first : second + 1].min(), force[second]))
-    return np.array(humps).reshape(-1, 3)
+        peaks.append((force[first], force[first : second + 1].min(), force[second]))
+    return np.array(peaks).reshape(-1, 3)
 
 
-def has_two_humps(humps: Array) -> npt.NDArray[np.bool_]:
-    """Whether the force of a stance dips by LEAST_DIP or more, shape (stances, 3) -> (stances,)."""
-    first, dip, second = humps.T
-    dips: npt.NDArray[np.bool_] = np.minimum(first, second) - dip >= LEAST_DIP
-    return dips
+def peak_counts(force: Array, foot: FootEvents) -> Indices:
+    """Number of peaks in every whole stance that rise by MIN_VALLEY from the valleys beside them, shape (stances,)."""
+    return np.array([find_peaks(force[a:b], prominence=MIN_VALLEY)[0].size for a, b in foot.stances], dtype=int)
 
 
 def com_excursions(signals: pa.Table, foot: FootEvents, axis: str) -> Array:
-    """Range of the centre of mass in every stride along y or z, off the straight line through the stride's ends [m]."""
+    """Range of the center of mass in every stride along y or z, measured from the straight line
+    through the ends of the stride [m].
+    """
     place = signals[f"com.{axis}_m"].to_numpy()
     return np.array([np.ptp(place[a : b + 1] - np.linspace(place[a], place[b], b + 1 - a)) for a, b in foot.strides])
 
@@ -280,7 +285,7 @@ def peak_moments(signals: pa.Table, joint: str, sign: int, side: Side, foot: Foo
 
 
 def people_com_excursion(direction: str, speed: float) -> People | None:
-    """People's range of the centre of mass at a speed [m/s]: between the two speeds of the source, None outside."""
+    """Human range of the center of mass at a speed [m/s]; None outside of the two speeds of the source."""
     if not COM_SPEEDS[0] <= speed <= COM_SPEEDS[1]:
         return None
     mean, sd = (float(np.interp(speed, COM_SPEEDS, ends)) for ends in zip(*COM_EXCURSIONS[direction], strict=True))
@@ -311,15 +316,15 @@ def _measures(signals: pa.Table, scenario: Scenario, feet: dict[Side, FootEvents
     for direction, axis in (("vertical", "z"), ("lateral", "y")):
         excursions = np.concatenate([com_excursions(signals, foot, axis) for foot in feet.values()])
         peoples = people_com_excursion(direction, float(speeds.mean()))
-        yield Measure(f"centre of mass, {direction} range", "m", excursions, peoples)
+        yield Measure(f"center of mass, {direction} range", "m", excursions, peoples)
 
-    humps = np.concatenate([force_humps(signals, side, foot, weight) for side, foot in feet.items()])
-    names = {"first hump": 1.1, "dip": 0.8, "second hump": 1.1}
-    for column, (name, share) in zip(humps.T, names.items(), strict=True):
-        yield Measure(f"ground force, {name}", "BW", column, People(share, share, PERRY))
-    yield Measure(
-        "share of stances with two humps", "", np.array([has_two_humps(humps).mean()]), People(1.0, 1.0, PERRY)
-    )
+    forces = {side: vertical_force(signals, side, weight) for side in SIDES}
+    peaks = np.concatenate([force_peaks(forces[side], foot) for side, foot in feet.items()])
+    names = {"first peak": 1.1, "valley": 0.8, "second peak": 1.1}
+    for column, (name, share) in zip(peaks.T, names.items(), strict=True):
+        yield Measure(f"vertical GRF, {name}", "BW", column, People(share, share, PERRY))
+    two = each(lambda side, foot: peak_counts(forces[side], foot) == 2)
+    yield Measure("share of stances with two peaks", "", np.array([two.mean()]), People(1.0, 1.0, PERRY))
 
     knee = ANGLES["knee"]
     least = each(lambda side, foot: late_stance_knee(over_strides(foot, knee.of(signals, side))))
@@ -342,16 +347,16 @@ def _people_late_stance_knee() -> People:
 
 def _require_walk(signals: pa.Table, feet: dict[Side, FootEvents], begin: float) -> None:
     counts = {side: len(foot.strides) for side, foot in feet.items()}
-    if min(counts.values()) < FEWEST_STRIDES:
+    if min(counts.values()) < MIN_STRIDES:
         raise ParameterError(
             f"strides: {counts['Right']} of the right leg and {counts['Left']} of the left from {begin:g} s on, where"
-            f" the walk is steady; allowed: from {FEWEST_STRIDES} of each on; walk longer, or a scenario that walks"
+            f" the walk is steady; allowed: from {MIN_STRIDES} of each on; walk longer, or a scenario that walks"
         )
     for side, foot in feet.items():
         ways = np.diff(matrix(signals, [f"{side.lower()}_sole.{axis}_m" for axis in "xy"])[foot.touchdowns], axis=0)
         angle = float(np.abs(np.arctan2(ways[:, 1], ways[:, 0])).max())
-        if angle > WIDEST_ANGLE:
+        if angle > MAX_HEADING:
             raise ParameterError(
                 f"strides: {np.degrees(angle):.0f} deg from straight ahead (x); allowed: up to "
-                f"{np.degrees(WIDEST_ANGLE):.0f} deg, as people's were measured; compare a straight walk"
+                f"{np.degrees(MAX_HEADING):.0f} deg, as people's were measured; compare a straight walk"
             )

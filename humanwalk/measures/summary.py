@@ -1,4 +1,4 @@
-"""What a walk amounts to: speed, lift, steps, support, torques, tracking and cost, each with one definition."""
+"""The summary of a run: speed, lift, steps, support, torques, tracking and cost; each measure has one definition."""
 
 import math
 from importlib.metadata import version
@@ -55,9 +55,16 @@ class Summary(TypedDict):
 def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> Summary:
     """Measure a run.
 
-    Speed, support, tracking and cost are taken over the steady walk: from the first touchdown after the ramp to the
-    end. A run that ended before has null there, and so has every number that is not finite. Without physics there are
-    no forces: steps, lift, support, torques and cost are null or none.
+    Speed, support, tracking and cost are means over the steady walk: from `Controller.steady_from` to the end. They
+    are null for a run that ended before, as is every number that is not finite. Without physics there are no forces:
+    steps, lift, torques and cost are null or empty.
+
+    Args:
+        scenario: what was simulated.
+        signals: the record.
+        end: why the simulation ended; "completed" at the end of its duration.
+        wall_time: of the simulation [s].
+        name: of the scenario.
     """
     time = signals[TIME].to_numpy()
     controller = scenario.controller
@@ -104,14 +111,14 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
 
 
 def foot_lift(signals: pa.Table, side: Side) -> float | None:
-    """Median over the strides of the sole's greatest height above its height at the start [m]; null without strides."""
+    """Median over the strides of the sole's greatest height above its initial height [m]; None without strides."""
     height = signals[f"{side.lower()}_sole.z_m"].to_numpy()
     peaks = [height[begin:end].max() for begin, end in events_of(signals, side).strides]
     return float(np.median(peaks) - height[0]) if peaks else None
 
 
 def foot_line_error(signals: pa.Table, side: Side) -> float:
-    """Greatest sideways distance of a sole from the line along x on which it started [m]."""
+    """Greatest lateral distance of a sole from the line along x through its initial position [m]."""
     y = signals[f"{side.lower()}_sole.y_m"].to_numpy()
     return float(np.abs(y - y[0]).max())
 
@@ -126,7 +133,7 @@ def pelvis_tracking(signals: pa.Table, rows: npt.NDArray[np.bool_]) -> float | N
 
 
 def qp_failures(signals: pa.Table) -> int | None:
-    """How often the whole-body program had no solution; null for a walk that has none."""
+    """Number of QP failures of the whole-body program; None without such a program."""
     if "qp.failures" not in signals.column_names:
         return None
     counts = signals["qp.failures"].to_numpy()
@@ -142,13 +149,13 @@ def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -
 
 
 def ik_converged_share(signals: pa.Table) -> float | None:
-    """Share of the samples at which a leg's inverse kinematics had converged; null where none was solved."""
+    """Share of the samples at which a leg's inverse kinematics had converged; None where none was solved."""
     columns = [f"{side.lower()}_leg.ik_converged" for side in SIDES]
     return float(matrix(signals, columns).mean()) if columns[0] in signals.column_names else None
 
 
 def _finite(value: Any) -> Any:
-    """The value, with null for what JSON has no number for."""
+    """The value with None for numbers that JSON cannot represent."""
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -12,7 +12,7 @@ from rich import box
 from rich.table import Table
 
 from humanwalk.files import write_text
-from humanwalk.measures.human_likeness import ANGLES, FEWEST_STRIDES, Comparison, Likeness, compare
+from humanwalk.measures.human_likeness import ANGLES, MIN_STRIDES, Comparison, Likeness, compare
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -53,7 +53,7 @@ def compare_run(run: Run) -> Comparison:
     if end not in UP_AT_ITS_END:
         raise ParameterError(
             f"{run.path}: the run ended with '{end}' at {run.summary['duration_s']:.2f} s; allowed: one that was "
-            f"up to its end, for {FEWEST_STRIDES} strides of each leg; walk again, and end before with --duration"
+            f"up to its end, for {MIN_STRIDES} strides of each leg; walk again, and end before with --duration"
         )
     try:
         return compare(run.signals, run.scenario)

@@ -1,4 +1,4 @@
-"""A walk beside people: made-up walks that move as people do, or differ from them in a known way."""
+"""Comparison with human gait of constructed walks that move as humans do, or differ from them in a known way."""
 
 import numpy as np
 import pytest
@@ -12,12 +12,13 @@ from humanwalk.measures.human_likeness import (
     Likeness,
     com_excursions,
     compare,
-    force_humps,
-    has_two_humps,
+    force_peaks,
     late_stance_knee,
     over_strides,
+    peak_counts,
     people,
     people_com_excursion,
+    vertical_force,
 )
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import GRAVITY, ParameterError
@@ -46,7 +47,7 @@ def test_people_are_those_of_the_source():
     assert 50.0 < knee.max() < 70.0
 
 
-def test_who_moves_as_people_do_is_like_them(walk, scenario):
+def test_walk_of_human_angles_agrees_with_human_gait(walk, scenario):
     comparison = compare(walk(), scenario)
     assert comparison.strides == {"Right": 7, "Left": 7}
     for name, sides in comparison.curves.items():
@@ -60,7 +61,7 @@ def test_who_moves_as_people_do_is_like_them(walk, scenario):
 
 
 @given(shift=st.floats(-30, 30), scale=st.floats(0.2, 3.0))
-def test_correlation_knows_neither_offset_nor_scale_and_the_difference_is_the_offset(shift, scale):
+def test_correlation_is_independent_of_offset_and_scale_and_the_difference_is_the_offset(shift, scale):
     cycle, mean, _ = people("knee_flexion_deg")
     curve = np.interp(CYCLE, cycle, mean)
     moved = shift + curve.mean() + scale * (curve - curve.mean())
@@ -70,7 +71,7 @@ def test_correlation_knows_neither_offset_nor_scale_and_the_difference_is_the_of
     assert likeness.rms[0] == pytest.approx(np.hypot(shift, (scale - 1) * curve.std()), abs=1e-6)
 
 
-def test_angle_that_stays_the_same_has_no_correlation():
+def test_constant_angle_has_no_correlation():
     assert np.isnan(Likeness.of(np.full((1, CYCLE.size), 5.0), "knee_flexion_deg").correlation).all()
 
 
@@ -97,21 +98,33 @@ def test_late_stance_knee_is_the_least_of_terminal_stance():
     assert late_stance_knee(curve[None]) == pytest.approx([12.0])
 
 
-@pytest.mark.parametrize(("dip", "two"), [(0.8, True), (1.0, True), (1.08, False)])
-def test_humps_are_found(walk, dip, two):
-    signals = walk(humps=(1.15, dip, 1.1))
-    humps = force_humps(signals, "Right", events_of(signals, "Right"), WEIGHT)
-    assert humps.mean(axis=0) == pytest.approx([1.15, dip, 1.1], abs=0.01)
-    assert set(has_two_humps(humps).tolist()) == {two}
+def with_force(signals, change):
+    """The record with a change of the right foot's vertical force [body weights], a function of force and time."""
+    name = "right_foot.force_z_N"
+    force = change(signals[name].to_numpy() / WEIGHT, signals[TIME].to_numpy())
+    return signals.set_column(signals.column_names.index(name), name, [WEIGHT * force])
 
 
-def test_impact_of_the_heel_is_no_hump(walk):
-    signals = walk()
-    time, force = signals[TIME].to_numpy(), signals["right_foot.force_z_N"].to_numpy()
-    impact = force + np.where(np.isclose(time % 1.0, 0.02), 2 * WEIGHT, 0.0)
-    knocked = signals.drop_columns("right_foot.force_z_N").append_column("right_foot.force_z_N", [impact])
-    humps = force_humps(knocked, "Right", events_of(knocked, "Right"), WEIGHT)
-    assert humps[:, 0] == pytest.approx(1.1, abs=0.02)
+def right_force(signals):
+    return vertical_force(signals, "Right", WEIGHT), events_of(signals, "Right")
+
+
+@pytest.mark.parametrize(("valley", "count"), [(0.8, 2), (1.0, 2), (1.08, 1)])
+def test_peaks_of_the_vertical_force_are_measured_and_counted(walk, valley, count):
+    force, foot = right_force(walk(humps=(1.15, valley, 1.1)))
+    assert force_peaks(force, foot).mean(axis=0) == pytest.approx([1.15, valley, 1.1], abs=0.01)
+    assert set(peak_counts(force, foot).tolist()) == {count}
+
+
+def test_third_peak_is_counted(walk):
+    """A bump of 0.3 body weights in the valley of mid-stance."""
+    bump = with_force(walk(), lambda force, time: force + 0.3 * np.exp(-(((time % STRIDE - 0.3) / 0.02) ** 2)))
+    assert set(peak_counts(*right_force(bump)).tolist()) == {3}
+
+
+def test_impact_of_the_heel_is_no_peak(walk):
+    impact = with_force(walk(), lambda force, time: force + np.where(np.isclose(time % 1.0, 0.02), 2.0, 0.0))
+    assert force_peaks(*right_force(impact))[:, 0] == pytest.approx(1.1, abs=0.02)
 
 
 def test_measures_of_a_walk_are_as_it_was_made(walk, scenario):
@@ -123,11 +136,11 @@ def test_measures_of_a_walk_are_as_it_was_made(walk, scenario):
         "share of stance": DUTY,
         "share of double support": 2 * DUTY - 1,
         "step width": WIDTH,
-        "centre of mass, vertical range": 0.036,
-        "centre of mass, lateral range": 0.04,
-        "ground force, first hump": 1.1,
-        "ground force, dip": 0.8,
-        "share of stances with two humps": 1.0,
+        "center of mass, vertical range": 0.036,
+        "center of mass, lateral range": 0.04,
+        "vertical GRF, first peak": 1.1,
+        "vertical GRF, valley": 0.8,
+        "share of stances with two peaks": 1.0,
         "moment, hip flexion": 0.5,
         "moment, ankle plantarflexion": 0.5,
         "cost of transport": 6 * 35 * (2 / np.pi) / (WEIGHT * LENGTH),
@@ -136,10 +149,10 @@ def test_measures_of_a_walk_are_as_it_was_made(walk, scenario):
         assert measures[name].values.mean() == pytest.approx(value, rel=0.02), name
 
 
-def test_people_walk_within_what_is_said_of_them(walk, scenario):
+def test_walk_of_human_angles_is_within_the_human_ranges(walk, scenario):
     """The walk made of people's angles and of textbook steps lies within people's values, where there are any."""
     measures = {measure.name: measure for measure in compare(walk(), scenario).measures}
-    for name in ("speed", "step length", "least knee flexion, terminal stance", "centre of mass, lateral range"):
+    for name in ("speed", "step length", "least knee flexion, terminal stance", "center of mass, lateral range"):
         people = measures[name].people
         assert people.source
         assert people.low <= measures[name].values.mean() <= people.high, name
@@ -155,13 +168,13 @@ def test_drift_is_no_excursion(walk):
 
 
 @pytest.mark.parametrize("direction", ["vertical", "lateral"])
-def test_people_s_excursion_is_between_the_speeds_of_the_source_only(direction):
+def test_human_excursion_is_given_between_the_speeds_of_the_source(direction):
     assert people_com_excursion(direction, 0.6) is None
     assert people_com_excursion(direction, 1.7) is None
     slow, fast = people_com_excursion(direction, 0.7), people_com_excursion(direction, 1.6)
     middle = people_com_excursion(direction, 1.15)
     assert middle.low == pytest.approx((slow.low + fast.low) / 2)
-    # Who walks faster rises more and sways less.
+    # A faster walk rises more and sways less.
     assert (fast.high > slow.high) == (direction == "vertical")
 
 
@@ -175,7 +188,7 @@ def test_people_s_excursion_is_between_the_speeds_of_the_source_only(direction):
     ],
     ids=["short", "standing", "aslant", "backward"],
 )
-def test_what_is_no_straight_walk_is_refused(walk, scenario, made, said):
+def test_walk_that_is_short_or_not_straight_is_refused(walk, scenario, made, said):
     with pytest.raises(ParameterError, match=said):
         compare(walk(**made), scenario)
 
@@ -187,7 +200,7 @@ def test_only_steady_strides_count(walk):
     assert compare(walk(), scenario).strides["Right"] == 4
 
 
-def test_moments_of_bending_and_stretching_are_apart(walk, scenario):
+def test_moments_of_flexion_and_extension_are_separate(walk, scenario):
     time = walk()[TIME].to_numpy()
     torque = {f"{side}LegTibiaMotion.torque_N_m": 7.0 + 35.0 * np.sin(2 * np.pi * time) for side in ("Right", "Left")}
     measures = {measure.name: measure.values for measure in compare(walk(**torque), scenario).measures}
@@ -200,4 +213,4 @@ def test_record_that_is_sampled_slowly_is_compared_too(walk, scenario):
     rows = np.arange(0, walk().num_rows, 10)
     measures = {measure.name: measure.values for measure in compare(walk().take(rows), scenario).measures}
     assert measures["cadence"] == pytest.approx(120 / STRIDE, rel=0.02)
-    assert np.isfinite(measures["ground force, dip"]).all()
+    assert np.isfinite(measures["vertical GRF, valley"]).all()
