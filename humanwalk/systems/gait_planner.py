@@ -60,7 +60,20 @@ class GaitPlanner(LeafSystem):
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
-        self._planner = _step_planner(plant, parameters, first_swing, period, terrain)
+        upright, leg = plant.CreateDefaultContext(), LEGS[first_swing]
+        hip, ankle, sole = (
+            float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
+            for frame in (leg.thigh, leg.hindfoot, leg.sole)
+        )
+        self._planner = StepPlanner(
+            parameters,
+            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(upright)[2]) - sole,
+            ankle_height=ankle - sole,
+            leg_length=hip - ankle,
+            first_swing=first_swing,
+            period=period,
+            terrain=terrain,
+        )
         self._step_duration = parameters.timing.step
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
@@ -115,27 +128,6 @@ class GaitPlanner(LeafSystem):
         half = min(0.5 * reference.phase_time / self._step_duration, 0.5)
         phases = {stance: half, other_side(stance): half + 0.5}
         return [phases[side] for side in SIDES]
-
-
-def _step_planner(
-    plant: MultibodyPlant, parameters: StepPlannerParameters, first_swing: Side, period: float, terrain: Terrain
-) -> StepPlanner:
-    """The step planner for the dimensions of a body in its default posture."""
-    upright = plant.CreateDefaultContext()
-    leg = LEGS[first_swing]
-    hip, ankle, sole = (
-        float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
-        for frame in (leg.thigh, leg.hindfoot, leg.sole)
-    )
-    return StepPlanner(
-        parameters,
-        standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(upright)[2]) - sole,
-        ankle_height=ankle - sole,
-        leg_length=hip - ankle,
-        first_swing=first_swing,
-        period=period,
-        terrain=terrain,
-    )
 
 
 def _balance(reference: WalkingReference) -> list[float]:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from humanwalk.quantity import quantity
-from humanwalk.walking.scalar_motion import ScalarMotion
+from humanwalk.walking.motions import ScalarMotion
 
 FREE_REACH = 0.4
 """Forward distance of a foothold from the center of mass that is reached without lowering it [m]: the feet roll over
@@ -66,13 +66,7 @@ class ComHeight:
         return (min(goal, max_height) - height) / time**2 - 2.0 * rate / time
 
     def arc(self, since_touchdown: float, step: float, speed: float) -> ScalarMotion:
-        """Height above the mean.
-
-        Args:
-            since_touchdown: Time since touchdown [s].
-            step: Duration of a step [s].
-            speed: Forward speed [m/s].
-        """
+        """Height above the mean, at a time since touchdown [s] in steps of a duration [s], at a forward speed [m/s]."""
         amplitude, rate = self.arc_amplitude(speed), 2.0 * math.pi / step
         angle = rate * (since_touchdown - self.delay)
         return ScalarMotion(

@@ -2,9 +2,9 @@
 
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.walking.command import Command
+from humanwalk.walking.motions import blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
-from humanwalk.walking.scalar_motion import blend
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
 SHORT_STEP = 1.2
@@ -17,15 +17,9 @@ TOES_STRAIGHT = 0.4
 
 
 def rollover_speed(state: PlannerState, step: complex, command: Command, parameters: StepPlannerParameters) -> float:
-    """Forward speed for the rollover of a foot [m/s]: the commanded one, or less if the step is short or backward.
+    """Forward speed for the rollover of a foot [m/s]: the commanded one, or less if the step [m] is short or backward.
 
     A foot that is steep when it leaves the ground below the body catches the ground with its toes.
-
-    Args:
-        state: State of the planner.
-        step: Displacement from this foot to the other one [m].
-        command: The current command.
-        parameters: Parameters of the planner.
     """
     length = (step / state.direction).real
     return min(command.forward, SHORT_STEP * length / parameters.timing.step)
@@ -67,14 +61,7 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
 def swinging_foot(
     state: PlannerState, swing: Swing, phase_rate: float, parameters: StepPlannerParameters
 ) -> FootReference:
-    """Reference of the swinging foot.
-
-    Args:
-        state: State of the planner.
-        swing: The swinging foot.
-        phase_rate: Rate of the clock.
-        parameters: Parameters of the planner.
-    """
+    """Reference of the swinging foot at a rate of the clock."""
     timing = parameters.timing
     progress = timing.swing_progress(state.elapsed)
     progress_rate = phase_rate / timing.single_support

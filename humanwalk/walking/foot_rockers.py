@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
-from humanwalk.walking.scalar_motion import ScalarMotion
+from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
 FULL_PITCH_SPEED = 1.0

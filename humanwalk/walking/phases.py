@@ -9,10 +9,11 @@ from humanwalk.terrain.terrain import Terrain
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind
+from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
-from humanwalk.walking.swing_foot import PlanarMotion, SwingProfile
+from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import BodyState, Phase
 
 STOP_SPEED = 0.05
@@ -78,10 +79,7 @@ class PhaseTransitions:
         swing = self._parameters.swing
         foot = body.foot(state.swing_side)
         profile = SwingProfile.from_toe_off(
-            foot.height,
-            foot.height_rate,
-            foot.pitch,
-            foot.pitch_rate,
+            foot,
             state.old_foot.ground + self._ankle_height,
             swing.touchdown_pitch(command.forward),
             self._parameters.timing.single_support,

@@ -12,9 +12,9 @@ from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
 from humanwalk.terrain.terrain import Terrain, height_at
 from humanwalk.walking.commanded_path import CommandedPath
-from humanwalk.walking.scalar_motion import ScalarMotion, blend
+from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
 from humanwalk.walking.step_timing import StepTiming
-from humanwalk.walking.swing_foot import PlanarMotion, SwingProfile
+from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import Phase
 
 

@@ -17,11 +17,10 @@ from humanwalk.walking.counter_rotation import foot_lead
 from humanwalk.walking.foot_placement import FILTER_TIME, FREEZE_TIME, foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
+from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import PhaseTransitions
 from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
-from humanwalk.walking.scalar_motion import ScalarMotion, blend
-from humanwalk.walking.swing_foot import PlanarMotion
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
 
@@ -144,15 +143,7 @@ class StepPlanner:
     def _advance_swing(
         self, state: PlannerState, swing: Swing, goal: complex, remaining: float, command: Command
     ) -> Swing:
-        """The swinging foot one control period later.
-
-        Args:
-            state: State of the planner.
-            swing: The swinging foot now.
-            goal: Desired foothold [m].
-            remaining: Time to touchdown [s].
-            command: The current command.
-        """
+        """The swinging foot one control period later, on its way to a foothold [m] for the remaining time [s]."""
         timing, placement, law = self.parameters.timing, self.parameters.placement, self.parameters.swing
         foothold = swing.foothold
         if timing.step - state.elapsed > FREEZE_TIME:
@@ -177,13 +168,7 @@ class StepPlanner:
         return self.parameters.support.clamp(zmp, state.stance_foot.position, state.heading, old, heel_is_up)
 
     def _max_com_height(self, state: PlannerState, foothold: Foothold, com: complex) -> float:
-        """Largest height above the ground under the stance foot from which a foothold is within reach [m].
-
-        Args:
-            state: State of the planner.
-            foothold: The foothold.
-            com: Center of mass at touchdown [m].
-        """
+        """Largest height above the ground under the stance foot from which a foothold is within reach [m]."""
         reach = (foothold.position - com) / state.direction
         height = self.parameters.height.max_com_height_for_reach(reach, self._leg_length, self._standing_com_height)
         return height + foothold.ground - state.stance_foot.ground

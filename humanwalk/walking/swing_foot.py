@@ -10,7 +10,8 @@ import numpy as np
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
-from humanwalk.walking.scalar_motion import ScalarMotion
+from humanwalk.walking.motions import PlanarMotion, ScalarMotion
+from humanwalk.walking.walking_reference import FootState
 
 HEIGHT_SHAPE = (1.0, 0.6, 0.27)
 """Height of the ankle at the inner quarters of the swing, relative to its apex. The human ankle rises at heel-off and
@@ -25,9 +26,6 @@ MAX_PITCH_SPEED = 1.7
 
 LANDING_DEPTH = 0.003
 """Depth below the ground at which the trajectory ends [m], so that the swing ends by contact."""
-
-JERK_LIMIT = 6000.0
-"""Bound on the third derivative of the position [m/s3], so that a foothold that jumps does not jerk the leg."""
 
 
 @dataclass(frozen=True)
@@ -68,41 +66,6 @@ class SwingParameters:
         return PlanarMotion(foothold, self.landing_speed_ratio * velocity, -self.landing_deceleration * velocity)
 
 
-class PlanarMotion(NamedTuple):
-    """Position, velocity and acceleration of a point over the level plane, complex [m, m/s, m/s2]."""
-
-    position: complex
-    velocity: complex = 0.0
-    acceleration: complex = 0.0
-
-    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float = JERK_LIMIT) -> PlanarMotion:
-        """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds.
-
-        The jerk is that of the quintic from the current motion, bounded, and constant for `dt`; the goal may move from
-        call to call.
-        """
-        r = max(remaining, 2.0 * dt)
-        jerk = 60.0 * (goal.position - self.position) / r**3
-        jerk -= (36.0 * self.velocity + 24.0 * goal.velocity) / r**2
-        jerk -= (9.0 * self.acceleration - 3.0 * goal.acceleration) / r
-        if abs(jerk) > jerk_limit:
-            jerk *= jerk_limit / abs(jerk)
-        return PlanarMotion(
-            self.position + dt * (self.velocity + dt * (self.acceleration / 2.0 + dt * jerk / 6.0)),
-            self.velocity + dt * (self.acceleration + dt * jerk / 2.0),
-            self.acceleration + dt * jerk,
-        )
-
-    def with_sideways_of(self, other: PlanarMotion, direction: complex) -> PlanarMotion:
-        """This motion along a unit vector, combined with another motion across it."""
-        return PlanarMotion(
-            *(
-                direction * complex((along / direction).real, (across / direction).imag)
-                for along, across in zip(self, other, strict=True)
-            )
-        )
-
-
 class Cubic(NamedTuple):
     """a + b s + c s^2 + d s^3."""
 
@@ -126,33 +89,25 @@ class SwingProfile:
 
     @staticmethod
     def from_toe_off(
-        height: float,
-        height_rate: float,
-        pitch: float,
-        pitch_rate: float,
-        flat_height: float,
-        toe_up: float,
-        duration: float,
-        parameters: SwingParameters,
+        foot: FootState, flat_height: float, toe_up: float, duration: float, parameters: SwingParameters
     ) -> SwingProfile:
         """The profile that continues the motion of a foot at toe-off.
 
         Args:
-            height, height_rate: Ankle [m, m/s].
-            pitch, pitch_rate: Foot, toes down positive [rad, rad/s].
+            foot: The foot at toe-off.
             flat_height: Height of the ankle if the foot stood flat there [m].
             toe_up: Pitch at touchdown, toes up positive [rad].
             duration: Duration of the swing [s].
             parameters: Shape of the swing.
         """
-        apex = max(height + parameters.lift, flat_height + parameters.clearance)
+        apex = max(foot.height + parameters.lift, flat_height + parameters.clearance)
         inner = flat_height + np.array(HEIGHT_SHAPE) * (apex - flat_height)
-        heights = np.array((height, *inner, flat_height - LANDING_DEPTH))
-        pitches = pitch + np.array(PITCH_SHAPE) * (-toe_up - pitch)
+        heights = np.array((foot.height, *inner, flat_height - LANDING_DEPTH))
+        pitches = foot.pitch + np.array(PITCH_SHAPE) * (-toe_up - foot.pitch)
         points = np.column_stack((heights, pitches))
         tangents = hermite_tangents(points)
         quarter = duration / (len(points) - 1)
-        tangents[0] = height_rate * quarter, pitch_rate * quarter
+        tangents[0] = foot.height_rate * quarter, foot.pitch_rate * quarter
         tangents[-1] = -parameters.landing_sink_rate * quarter, 0.0
         coefficients = CubicHermite(points, tangents).coefficients.tolist()
         return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients))

@@ -10,8 +10,7 @@ from typing import Self
 
 from humanwalk.body import Side
 from humanwalk.quantity import GRAVITY
-from humanwalk.walking.scalar_motion import ScalarMotion
-from humanwalk.walking.swing_foot import PlanarMotion
+from humanwalk.walking.motions import PlanarMotion, ScalarMotion
 
 
 class Phase(Enum):

@@ -12,7 +12,7 @@ from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
-from humanwalk.walking.swing_foot import PlanarMotion
+from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
 PARAMETERS = WholeBodyParameters()

@@ -7,10 +7,11 @@ from hypothesis import strategies as st
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
+from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
-from humanwalk.walking.swing_foot import LANDING_DEPTH, PlanarMotion, SwingProfile
-from humanwalk.walking.walking_reference import FootTask, Phase
+from humanwalk.walking.swing_foot import LANDING_DEPTH, SwingProfile
+from humanwalk.walking.walking_reference import FootState, FootTask, Phase
 
 PARAMETERS = StepPlannerParameters()
 TIMING, ROCKERS = PARAMETERS.timing, PARAMETERS.rockers
@@ -26,9 +27,8 @@ def state_at(elapsed, steps=1):
 
 
 def swing_to(foothold, toes=0.5):
-    profile = SwingProfile.from_toe_off(
-        ANKLE + 0.05, 0.2, 0.9, 3.0, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing
-    )
+    foot = FootState(OLD.position, 0j, ANKLE + 0.05, height_rate=0.2, yaw=0.1, pitch=0.9, pitch_rate=3.0, force=0.0)
+    profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing)
     return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes)
 
 

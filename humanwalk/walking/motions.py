@@ -1,0 +1,68 @@
+"""Motions: a number, or a point of the level plane, with its first two time derivatives."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from humanwalk.numerics.scalars import clip, quintic_blend
+
+JERK_LIMIT = 6000.0
+"""Bound on the third derivative of the position [m/s3], so that a foothold that jumps does not jerk the leg."""
+
+
+class ScalarMotion(NamedTuple):
+    """Value, rate and acceleration of a height [m] or an angle [rad]."""
+
+    value: float = 0.0
+    rate: float = 0.0
+    acceleration: float = 0.0
+
+    def plus(self, other: ScalarMotion) -> ScalarMotion:
+        """The sum of two motions."""
+        return ScalarMotion(self.value + other.value, self.rate + other.rate, self.acceleration + other.acceleration)
+
+    def time_scaled(self, factor: float) -> ScalarMotion:
+        """The same motion when its time, or the variable it depends on, advances by `factor` per second."""
+        return ScalarMotion(self.value, factor * self.rate, factor**2 * self.acceleration)
+
+
+def blend(start: float, end: float, time: float, duration: float) -> ScalarMotion:
+    """Quintic motion from `start` to `end` within a duration; at rest before and after."""
+    s, slope, curvature = quintic_blend(clip(time / duration, 0.0, 1.0))
+    change = end - start
+    return ScalarMotion(start + change * s, change * slope / duration, change * curvature / duration**2)
+
+
+class PlanarMotion(NamedTuple):
+    """Position, velocity and acceleration of a point over the level plane, complex [m, m/s, m/s2]."""
+
+    position: complex
+    velocity: complex = 0.0
+    acceleration: complex = 0.0
+
+    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float = JERK_LIMIT) -> PlanarMotion:
+        """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds.
+
+        The jerk is that of the quintic from the current motion, bounded, and constant for `dt`; the goal may move from
+        call to call.
+        """
+        r = max(remaining, 2.0 * dt)
+        jerk = 60.0 * (goal.position - self.position) / r**3
+        jerk -= (36.0 * self.velocity + 24.0 * goal.velocity) / r**2
+        jerk -= (9.0 * self.acceleration - 3.0 * goal.acceleration) / r
+        if abs(jerk) > jerk_limit:
+            jerk *= jerk_limit / abs(jerk)
+        return PlanarMotion(
+            self.position + dt * (self.velocity + dt * (self.acceleration / 2.0 + dt * jerk / 6.0)),
+            self.velocity + dt * (self.acceleration + dt * jerk / 2.0),
+            self.acceleration + dt * jerk,
+        )
+
+    def with_sideways_of(self, other: PlanarMotion, direction: complex) -> PlanarMotion:
+        """This motion along a unit vector, combined with another motion across it."""
+        return PlanarMotion(
+            *(
+                direction * complex((along / direction).real, (across / direction).imag)
+                for along, across in zip(self, other, strict=True)
+            )
+        )
