@@ -17,6 +17,7 @@ from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import cross_matrix
 from humanwalk.numerics.scalars import clip
+from humanwalk.terrain import Terrain
 from humanwalk.walking.walking_reference import BodyState, FootState
 
 BY_V = JacobianWrtVariable.kV
@@ -135,27 +136,38 @@ class BodyDynamics:
         )
         return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
 
-    def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float]) -> BodyState:
-        """The body as the step planner takes it, from a plant state [q; v] and the vertical forces of the feet [N]."""
+    def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
+        """The measured state for the step planner.
+
+        Args:
+            state: plant state [q; v].
+            time: of the state [s].
+            foot_forces: vertical ground reaction forces [N].
+            terrain: relative to its axes are yaw and pitch of the feet.
+        """
         plant, context = self.plant, self._context
         plant.SetPositionsAndVelocities(context, state)
-        x, y, z = plant.CalcCenterOfMassPositionInWorld(context).tolist()
-        vx, vy, _ = plant.CalcCenterOfMassTranslationalVelocityInWorld(context).tolist()
-        right, left = (self._foot_state(side, foot_forces[side]) for side in SIDES)
-        return BodyState(time, complex(x, y), complex(vx, vy), z, right, left)
+        x, y, z = plant.CalcCenterOfMassPositionInWorld(context)
+        vx, vy, _ = plant.CalcCenterOfMassTranslationalVelocityInWorld(context)
+        right, left = (self._foot_state(side, foot_forces[side], terrain) for side in SIDES)
+        return BodyState(time, complex(x, y), complex(vx, vy), float(z), right, left)
 
-    def _foot_state(self, side: Side, force: float) -> FootState:
+    def _foot_state(self, side: Side, force: float, terrain: Terrain) -> FootState:
         ankle = self._ankles[side]
-        (xx, _, _, px), (xy, _, _, py), (xz, _, _, pz) = ankle.CalcPoseInWorld(self._context).GetAsMatrix34().tolist()
-        wx, wy, _, vx, vy, vz = ankle.CalcSpatialVelocityInWorld(self._context).get_coeffs().tolist()
-        yaw = math.atan2(xy, xx)
+        X_WF, V_WF = ankle.CalcPoseInWorld(self._context), ankle.CalcSpatialVelocityInWorld(self._context)
+        x, y, z = X_WF.translation().tolist()
+        vx, vy, vz = V_WF.translational().tolist()
+        R_SW = terrain.axes(np.array((x, y)))
+        forward = (R_SW @ X_WF.rotation().matrix())[:, 0]
+        yaw = math.atan2(forward[1], forward[0])
+        pitch_axis = np.array((-math.sin(yaw), math.cos(yaw), 0.0))
         return FootState(
-            position=complex(px, py),
+            position=complex(x, y),
             velocity=complex(vx, vy),
-            height=pz,
+            height=z,
             height_rate=vz,
             yaw=yaw,
-            pitch=math.asin(clip(-xz, -1.0, 1.0)),
-            pitch_rate=math.cos(yaw) * wy - math.sin(yaw) * wx,
+            pitch=math.asin(clip(-forward[2], -1.0, 1.0)),
+            pitch_rate=float(pitch_axis @ R_SW @ V_WF.rotational()),
             force=force,
         )

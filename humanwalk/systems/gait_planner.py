@@ -59,7 +59,7 @@ class GaitPlanner(LeafSystem):
             terrain: The ground.
         """
         super().__init__()
-        self._dynamics = BodyDynamics(plant)
+        self._dynamics, self._terrain = BodyDynamics(plant), terrain
         upright, leg = plant.CreateDefaultContext(), LEGS[first_swing]
         hip, ankle, sole = (
             float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
@@ -109,7 +109,7 @@ class GaitPlanner(LeafSystem):
     def _body(self, context: Context) -> BodyState:
         forces = self._foot_forces.Eval(context)
         vertical = {side: float(forces[FOOT_FORCE_Z[side]]) for side in SIDES}
-        return self._dynamics.body_state(self._state.Eval(context), context.get_time(), vertical)
+        return self._dynamics.body_state(self._state.Eval(context), context.get_time(), vertical, self._terrain)
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)

@@ -38,7 +38,8 @@ class FootState:
     Attributes:
         position, velocity: Ankle over the level plane, complex [m, m/s].
         height, height_rate: Ankle in W [m, m/s].
-        yaw, pitch, pitch_rate: Orientation of the foot [rad, rad/s]; pitch is positive with the toes down.
+        yaw, pitch, pitch_rate: Orientation of the foot relative to the axes of the terrain [rad, rad/s]; pitch is
+            positive with the toes down.
         force: Vertical ground reaction force [N].
     """
 
@@ -82,10 +83,10 @@ class FootReference:
     Attributes:
         task: Phase of the foot.
         load: Allowed fraction of the largest contact forces, 0 to 1.
-        yaw: Yaw of the foot [rad].
+        yaw: Yaw of the foot, relative to the axes of the terrain [rad].
         position: Ankle over the level plane (SWING only).
         height: Ankle in W [m] (SWING only).
-        pitch: Pitch of the foot [rad] (SWING and HEEL_OFF only).
+        pitch: Pitch of the foot relative to the terrain [rad] (SWING and HEEL_OFF only).
         toes: Extension of the toes and its rate [rad, rad/s].
     """
 
