@@ -59,7 +59,7 @@ SHOTS = {
         "thesis",
         video=CLIP,
         figures=(
-            *("gait_cycle_angles", "joint_power", "ground_reaction", "centre_of_pressure"),
+            *("gait_cycle_angles", "joint_power", "ground_reaction", "center_of_pressure"),
             *("support_force", "joint_torques"),
         ),
     ),

@@ -1,4 +1,4 @@
-"""How every plot looks: size, colours, labels and legend; matplotlib without pyplot, so nothing is global."""
+"""How every plot looks: size, colors, labels and legend; matplotlib without pyplot, so nothing is global."""
 
 import base64
 import io
@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +14,7 @@ from matplotlib.lines import Line2D
 
 from humanwalk.body.visuals import SIDE_COLORS
 from humanwalk.files import write_whole
-from humanwalk.numerics import Array
+from humanwalk.numerics import Array, Mask
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -26,7 +25,7 @@ DPI = 160
 SIDE = SIDE_COLORS
 """Right is blue, left is orange, as on the body."""
 AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
-"""World x, y, z in plots of one vector: neither of the two sides' colours."""
+"""World x, y, z in plots of one vector: neither of the two sides' colors."""
 INK = "#202020"
 DESIRED = "#bdbdbd"
 REFERENCE = "#777777"
@@ -79,8 +78,8 @@ def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
 
 
 def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:
-    """A line through samples; what is no finite number, as at the end of a failed run, is left out."""
-    (line,) = axes.plot(x, np.where(np.isfinite(y), y, np.nan), **{"linewidth": 1.2} | style)
+    """A line through samples."""
+    (line,) = axes.plot(x, y, **{"linewidth": 1.2} | style)
     return line
 
 
@@ -90,15 +89,15 @@ def level(axes: Axes, y: float, text: str | None = None) -> None:
     axes.axhline(y, color=REFERENCE, linestyle=style, linewidth=width, label=text)
 
 
-def shade(axes: Axes, x: Array, where: npt.NDArray[np.bool_], text: str) -> None:
-    """Grey bands over the stretches of x where `where` holds."""
+def shade(axes: Axes, x: Array, where: Mask, text: str) -> None:
+    """Gray bands over the stretches of x where `where` holds."""
     axes.fill_between(
         x, 0.0, 1.0, where=where.tolist(), transform=axes.get_xaxis_transform(), color=STANCE, linewidth=0, label=text
     )
 
 
 def true_proportions(figure: Figure) -> None:
-    """One metre as long sideways as along, in a figure of one axes."""
+    """One meter as long sideways as along, in a figure of one axes."""
     figure.axes[0].set_aspect("equal")
     figure.set_layout_engine("compressed")
 

@@ -1,4 +1,4 @@
-"""Figures 4.2 to 4.7: the thesis' two foot paths as its programs make them, in centimetres."""
+"""Figures 4.2 to 4.7: the thesis' two foot paths as its programs make them, in centimeters."""
 
 from collections.abc import Callable
 from functools import partial

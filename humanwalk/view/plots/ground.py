@@ -1,7 +1,6 @@
 """What the feet and the ground do to each other at the end of a run."""
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -11,7 +10,7 @@ from humanwalk.body import REFERENCE_STATURE, SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.measures.signals import TIME
-from humanwalk.numerics import Array
+from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import INK, SIDE, curve, label, legend, level, new_figure, true_proportions
@@ -19,7 +18,7 @@ from humanwalk.view.plots.drawing import INK, SIDE, curve, label, legend, level,
 LAST_SECONDS = 2.0
 """Stretch of `ground_reaction` [s]: three strides of the thesis' walk."""
 LAST_SECONDS_ABOVE = 1.2
-"""Stretch of `centre_of_pressure` [s]: two strides, which at true proportions still shows the feet."""
+"""Stretch of `center_of_pressure` [s]: two strides, which at true proportions still shows the feet."""
 
 
 def ground_reaction(run: Run) -> Figure | None:
@@ -45,24 +44,24 @@ def ground_reaction(run: Run) -> Figure | None:
     return figure
 
 
-def centre_of_pressure(run: Run) -> Figure | None:
-    """Centre of mass, centres of pressure and footprints from above [m]; None if no foot was loaded."""
+def center_of_pressure(run: Run) -> Figure | None:
+    """Center of mass, centers of pressure and footprints from above [m]; None if no foot was loaded."""
     time, rows = _last(run, LAST_SECONDS_ABOVE)
     loaded = {side: (run.signals[f"{side.lower()}_foot.force_z_N"].to_numpy() >= CONTACT_ON_N) & rows for side in SIDES}
     if time.size < 2 or not any(on.any() for on in loaded.values()):
         return None
     figure = new_figure(
-        f"Centre of mass and centres of pressure from above, last {time[-1] - time[0]:.3g} s", height=1.8
+        f"Center of mass and centers of pressure from above, last {time[-1] - time[0]:.3g} s", height=1.8
     )
     (axes,) = figure.axes
     for side in SIDES:
         _footprints(run, axes, side, rows)
         cop = {axis: run.signals[f"{side.lower()}_foot.cop_{axis}_m"].to_numpy()[loaded[side]] for axis in "xy"}
         axes.plot(
-            cop["x"], cop["y"], ".", markersize=3.5, color=SIDE[side], label=f"centre of pressure, {side.lower()}"
+            cop["x"], cop["y"], ".", markersize=3.5, color=SIDE[side], label=f"center of pressure, {side.lower()}"
         )
     com = {axis: run.signals[f"com.{axis}_m"].to_numpy()[rows] for axis in "xy"}
-    line = curve(axes, com["x"], com["y"], color=INK, label="centre of mass")
+    line = curve(axes, com["x"], com["y"], color=INK, label="center of mass")
     dots = [
         Line2D(
             [],
@@ -71,7 +70,7 @@ def centre_of_pressure(run: Run) -> Figure | None:
             markersize=4,
             linestyle="",
             color=SIDE[side],
-            label=f"centre of pressure, {side.lower()}",
+            label=f"center of pressure, {side.lower()}",
         )
         for side in SIDES
     ]
@@ -82,13 +81,13 @@ def centre_of_pressure(run: Run) -> Figure | None:
     return figure
 
 
-def _last(run: Run, seconds: float) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _last(run: Run, seconds: float) -> tuple[Array, Mask]:
     time = run.signals[TIME].to_numpy()
     rows = time >= time[-1] - seconds
     return time[rows], rows
 
 
-def _footprints(run: Run, axes: Axes, side: Side, rows: npt.NDArray[np.bool_]) -> None:
+def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
     """Outline of the sole where it was in the middle of each contact."""
     contact = events_of(run.signals, side).contact & rows
     edges = np.flatnonzero(np.diff(np.concatenate(([0], contact.astype(int), [0]))))

@@ -1,4 +1,4 @@
-"""All joints at a glance: torques of the legs over one stride, and how well every joint follows its desired angle."""
+"""Torques of the leg joints over one stride, and the tracking error of every joint."""
 
 import re
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side, human
-from humanwalk.measures.effort import joint_names
+from humanwalk.body.limbs import LEGS
 from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
@@ -31,18 +31,18 @@ def joint_torques(run: Run) -> Figure | None:
     strides = {side: events_of(run.signals, side).touchdown_times[-2:] for side in SIDES}
     if any(stride.size < 2 for stride in strides.values()):
         return None
-    motions = [name.removeprefix("Right") for name in joint_names(run.signals) if name.startswith("RightLeg")]
+    joints = {side: (*leg.chain, leg.midfoot, leg.toes) for side, leg in LEGS.items()}
     figure = new_figure(
         "Torques of the leg joints over the last stride, from touchdown", height=4.6, rows=3, columns=3, sharex=True
     )
-    # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
+    # The walk is nearly symmetric: the right curve is wide enough to be visible behind the left one.
     width: dict[Side, float] = {"Right": 2.2, "Left": 0.9}
-    for axes, motion in zip(figure.axes, motions, strict=True):
+    for place, axes in enumerate(figure.axes):
         level(axes, 0.0)
         for side in SIDES:
-            share, torque = _over_stride(run, f"{side}{motion}.torque_N_m", strides[side])
-            curve(axes, share, torque, color=SIDE[side], label=side.lower(), linewidth=width[side])
-        axes.set_title(human().joint(f"Right{motion}").motion, fontsize=LABEL_SIZE, pad=3)
+            percent, torque = _over_stride(run, f"{joints[side][place]}.torque_N_m", strides[side])
+            curve(axes, percent, torque, color=SIDE[side], label=side.lower(), linewidth=width[side])
+        axes.set_title(human().joint(joints["Right"][place]).motion, fontsize=LABEL_SIZE, pad=3)
     for place, axes in enumerate(figure.axes):
         label(axes, "stride [%]" if place >= 6 else "", "torque [N m]" if place % 3 == 0 else "")
     figure.align_ylabels()
@@ -58,22 +58,23 @@ def joint_torques(run: Run) -> Figure | None:
 
 
 def tracking_error(run: Run) -> Figure | None:
-    """Rms difference of desired and actual angle of every joint in steady walking [deg]; None if it never came."""
+    """Rms difference of desired and actual angle of every joint in steady walking [deg]; None if there is none."""
     errors = {name: np.degrees(error) for name, error in run.summary["tracking_error_rad"].items() if error is not None}
-    limbs = [name.removeprefix("Right") for name in errors if name.startswith("Right")]
+    right, left = ([name for name in errors if name.startswith(side)] for side in SIDES)
     trunk = [name for name in errors if not name.startswith(SIDES)]
-    if not (limbs or trunk):
+    if not errors:
         return None
     figure = new_figure(
         "Tracking error in steady walking, rms of desired minus actual angle", height=3.6, columns=2, sharex=True
     )
-    left, right = figure.axes
-    for side, shift in zip(SIDES, (-0.2, 0.2), strict=True):
-        _bars(left, [errors[f"{side}{name}"] for name in limbs], shift, 0.38, side)
-    _ticks(left, [human().joint(f"Right{name}").motion for name in limbs])
-    _bars(right, [errors[name] for name in trunk], 0.0, 0.6, None)
-    _ticks(right, [re.sub(r"(?<=\d)_(?=\d)", "–", name.removesuffix("_Motion")).replace("_", " ") for name in trunk])
-    legend(left)
+    limb_axes, trunk_axes = figure.axes
+    for side, names, shift in zip(SIDES, (right, left), (-0.2, 0.2), strict=True):
+        _bars(limb_axes, [errors[name] for name in names], shift, 0.38, side)
+    _ticks(limb_axes, [human().joint(name).motion for name in right])
+    _bars(trunk_axes, [errors[name] for name in trunk], 0.0, 0.6, None)
+    bodies = [human().joint(name).child for name in trunk]
+    _ticks(trunk_axes, [re.sub(r"(?<=\d)_(?=\d)", "–", body).replace("_", " ") for body in bodies])
+    legend(limb_axes)
     return figure
 
 

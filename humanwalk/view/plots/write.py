@@ -10,7 +10,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import FORMATS, save
 from humanwalk.view.plots.gait_cycle import gait_cycle_angles, gait_cycle_pelvis, joint_power
-from humanwalk.view.plots.ground import centre_of_pressure, ground_reaction
+from humanwalk.view.plots.ground import center_of_pressure, ground_reaction
 from humanwalk.view.plots.joints import joint_torques, tracking_error
 from humanwalk.view.plots.support import support_force, support_torque
 from humanwalk.view.plots.thesis_figures import THESIS_PLOTS
@@ -22,7 +22,7 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "gait_cycle_pelvis": gait_cycle_pelvis,
     "joint_power": joint_power,
     "ground_reaction": ground_reaction,
-    "centre_of_pressure": centre_of_pressure,
+    "center_of_pressure": center_of_pressure,
     "joint_torques": joint_torques,
     "tracking_error": tracking_error,
 }
