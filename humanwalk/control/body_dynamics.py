@@ -136,12 +136,11 @@ class BodyDynamics:
         )
         return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
 
-    def body_state(self, state: Array, time: float, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
+    def body_state(self, state: Array, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
         """The measured state for the step planner.
 
         Args:
             state: plant state [q; v].
-            time: of the state [s].
             foot_forces: vertical ground reaction forces [N].
             terrain: relative to its axes are yaw and pitch of the feet.
         """
@@ -150,7 +149,7 @@ class BodyDynamics:
         x, y, z = plant.CalcCenterOfMassPositionInWorld(context)
         vx, vy, _ = plant.CalcCenterOfMassTranslationalVelocityInWorld(context)
         right, left = (self._foot_state(side, foot_forces[side], terrain) for side in SIDES)
-        return BodyState(time, complex(x, y), complex(vx, vy), float(z), right, left)
+        return BodyState(complex(x, y), complex(vx, vy), float(z), right, left)
 
     def _foot_state(self, side: Side, force: float, terrain: Terrain) -> FootState:
         ankle = self._ankles[side]

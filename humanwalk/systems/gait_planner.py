@@ -109,7 +109,7 @@ class GaitPlanner(LeafSystem):
     def _body(self, context: Context) -> BodyState:
         forces = self._foot_forces.Eval(context)
         vertical = {side: float(forces[FOOT_FORCE_Z[side]]) for side in SIDES}
-        return self._dynamics.body_state(self._state.Eval(context), context.get_time(), vertical, self._terrain)
+        return self._dynamics.body_state(self._state.Eval(context), vertical, self._terrain)
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)

@@ -58,13 +58,11 @@ class BodyState:
     """Measured state of the body.
 
     Attributes:
-        time: Time [s].
         com, com_velocity: Center of mass over the level plane, complex [m, m/s].
         com_height: Center of mass in W [m].
         right, left: The feet.
     """
 
-    time: float
     com: complex
     com_velocity: complex
     com_height: float

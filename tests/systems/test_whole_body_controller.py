@@ -30,7 +30,7 @@ def standing(plant, joints):
 
 @pytest.fixture
 def plan(controller, standing):
-    body = controller._dynamics.body_state(standing, 0.0, {"Right": 350.0, "Left": 350.0}, Plane())
+    body = controller._dynamics.body_state(standing, {"Right": 350.0, "Left": 350.0}, Plane())
     planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
     return planner.update(planner.start(body), body, Command())[1]
 

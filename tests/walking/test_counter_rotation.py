@@ -20,5 +20,5 @@ def foot(position, velocity=0j):
 def test_the_lead_does_not_depend_on_position_and_orientation_in_the_world(offset, velocity, heading):
     u = cmath.exp(1j * heading)
     right, left = foot(offset), foot(offset + (0.3 + 0.1j) * u, velocity * u)
-    body = BodyState(time=0.0, com=offset, com_velocity=0j, com_height=0.97, right=right, left=left)
+    body = BodyState(com=offset, com_velocity=0j, com_height=0.97, right=right, left=left)
     assert foot_lead(body, heading) == pytest.approx((0.3, velocity.real), abs=1e-9)

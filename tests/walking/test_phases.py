@@ -23,7 +23,7 @@ def foot(position, force=350.0, **changes):
     return FootState(position=position, force=force, **(values | changes))
 
 
-BODY = BodyState(0.0, 0j, 0j, 0.97, right=foot(-0.1j), left=foot(0.1j))
+BODY = BodyState(0j, 0j, 0.97, right=foot(-0.1j), left=foot(0.1j))
 
 
 def in_single_support(progress=0.5, steps=1):

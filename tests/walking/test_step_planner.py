@@ -47,8 +47,8 @@ def foot(position, force=350.0, **changes):
     return FootState(**(values | changes))
 
 
-def standing(com=0.03 + 0j, velocity=0j, time=0.0):
-    return BodyState(time, com, velocity, 0.96, foot(-0.0875j), foot(0.0875j))
+def standing():
+    return BodyState(0.03 + 0j, 0j, 0.96, foot(-0.0875j), foot(0.0875j))
 
 
 def pendulum_walk(plan, command, duration, push=None):
@@ -70,7 +70,7 @@ def pendulum_walk(plan, command, duration, push=None):
                 feet[side] = foot(target.position.position, 0.0, velocity=target.position.velocity, yaw=target.yaw)
             else:
                 feet[side] = foot(old.position, yaw=old.yaw)
-        body = BodyState(time + PERIOD, body.com + PERIOD * velocity, velocity, 0.93, feet["Right"], feet["Left"])
+        body = BodyState(body.com + PERIOD * velocity, velocity, 0.93, feet["Right"], feet["Left"])
 
 
 def walk_at(forward, sideways=0.0, turn=0.0):
@@ -198,7 +198,7 @@ def test_step_durations_do_not_depend_on_the_control_period():
         state = plan.start(body)
         for tick in range(round(4.0 / period)):
             before = state.phase
-            state, _ = plan.update(state, replace(body, time=tick * period), walk_at(0.0001, 0.06)(tick * period))
+            state, _ = plan.update(state, body, walk_at(0.0001, 0.06)(tick * period))
             if before is Phase.SINGLE_SUPPORT and state.phase is Phase.DOUBLE_SUPPORT:
                 times.append(tick * period)
             body = replace(body, right=replace(body.right, force=0.0), left=replace(body.left, force=0.0))
