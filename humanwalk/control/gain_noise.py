@@ -1,4 +1,4 @@
-"""Gains that are not quite what they should be: nobody knows them of a real body."""
+"""Random errors of gains: those of a real body are not known exactly."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from humanwalk.numerics import Array
 
 
 def gain_factors(size: int, noise: float, random: np.random.Generator) -> Array:
-    """Random factors about 1, whose logarithm has the standard deviation `noise`; shape (size,)."""
+    """Log-normal random factors with median 1, shape (size,); `noise` is the standard deviation of their logarithm."""
     factors: Array = np.exp(noise * random.standard_normal(size))
     return factors
 
 
 def noisy_tasks(parameters: WholeBodyParameters, noise: float, random: np.random.Generator) -> WholeBodyParameters:
-    """The same parameters, stiffness and damping of each task times a random factor each; weights stay."""
+    """Multiply stiffness and damping of each task by random factors; weights do not change."""
     changed: dict[str, Any] = {}
     for field in fields(parameters):
         gains = getattr(parameters, field.name)

@@ -12,14 +12,14 @@ from scipy.linalg.lapack import dpotrf, dtrtri
 
 from humanwalk.numerics import Array
 
-EQUATION = 5
-"""DAQP's word for a constraint that is an equation."""
-MOST_ITERATIONS = 500
-"""Changes of the active set; a walk's programs take 8 on average, 50 at most."""
+EQUALITY = 5
+"""DAQP's code of an equality constraint."""
+MAX_ITERATIONS = 500
+"""Maximum number of changes of the active set; the programs of a walk take 8 on average, 50 at most."""
 
 
 class QuadraticProgram(NamedTuple):
-    """min a'Ha/2 + g'a + f'f/2 subject to lower <= (f, a, A a + B f) <= upper; where both are equal it is an equation.
+    """min a'Ha/2 + g'a + f'f/2 subject to lower <= (f, a, A a + B f) <= upper; equal bounds are an equality constraint.
 
     H: (m, m). g: (m,). A: (rows, m). B: (rows, k). lower, upper: (k + m + rows,).
     """
@@ -32,12 +32,9 @@ class QuadraticProgram(NamedTuple):
     upper: Array
 
     def solution(self) -> tuple[Array, Array] | None:
-        """The least a and f, or None where the solver finds none.
-
-        The same program has the same solution to the last bit.
-        """
-        # DAQP inverts H in plain loops, which would take longer than all the rest. With H = U'U and y = U a the cost is
-        # y'y/2 and linear terms; the bounds of a become rows, those of f stay simple ones, of the first variables.
+        """The solution a and f, or None if the solver finds none; the same program has the same solution bit by bit."""
+        # DAQP would invert H in plain loops, which takes longer than the rest of the solution. With H = U'U and y = U a
+        # the cost is y'y/2 plus linear terms; the bounds of a become rows, those of f remain bounds of variables.
         U, undefined = dpotrf(self.H.T, clean=1)
         if undefined:
             return None
@@ -48,14 +45,12 @@ class QuadraticProgram(NamedTuple):
         constraints[m:, :k] = self.B
         np.matmul(self.A, to_a, out=constraints[m:, k:])
         np.matmul(self.g, to_a, out=cost[k:])
-        # DAQP passes over a constraint that is not a number.
+        # DAQP ignores constraints that are NaN.
         if not math.isfinite(np.vdot(constraints, constraints) + cost @ cost + self.lower @ self.upper):
             return None
-        kind = np.multiply(self.lower == self.upper, EQUATION, dtype=np.int32)
+        kind = np.multiply(self.lower == self.upper, EQUALITY, dtype=np.int32)
         identity = _identity(k + m)
-        x, _, flag, _ = daqp.solve(
-            identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MOST_ITERATIONS
-        )
+        x, _, flag, _ = daqp.solve(identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MAX_ITERATIONS)
         return (to_a @ x[k:], x[:k]) if flag > 0 else None
 
 

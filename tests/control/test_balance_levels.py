@@ -1,4 +1,4 @@
-"""The two balance levels of the thesis: signs, bounds, and nothing where there is nothing to balance."""
+"""The two balance levels of the thesis: signs, bounds, and no response without an error."""
 
 import numpy as np
 import pytest
@@ -37,34 +37,34 @@ def test_in_flight_no_force_is_desired():
     np.testing.assert_array_equal(desired_foot_forces(np.zeros(2), WEIGHT), 0.0)
 
 
-def test_nothing_missing_moves_nothing():
+def test_without_a_force_error_the_targets_do_not_move():
     np.testing.assert_array_equal(foot_shift_rate(np.zeros((2, 3)), np.zeros((2, 3)), LEVEL_1), 0.0)
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_a_missing_force_moves_the_target_the_other_way(axis):
-    """Missing vertical force presses the target down, so the ground pushes up the more."""
-    missing = np.zeros((2, 3))
-    missing[0, axis] = 100.0
-    rate = foot_shift_rate(np.zeros((2, 3)), missing, LEVEL_1)
+def test_a_missing_force_moves_the_target_in_the_opposite_direction(axis):
+    """A missing vertical force moves the target down, which increases the ground reaction force."""
+    force_error = np.zeros((2, 3))
+    force_error[0, axis] = 100.0
+    rate = foot_shift_rate(np.zeros((2, 3)), force_error, LEVEL_1)
     assert rate[0, axis] < 0
     assert np.count_nonzero(rate) == 1
 
 
-@given(missing=forces)
-def test_the_shift_settles_at_compliance_times_force_within_its_bound(missing):
+@given(force_error=forces)
+def test_the_shift_converges_to_compliance_times_force_within_its_bound(force_error):
     shift, dt = np.zeros((2, 3)), 0.01
     for _ in range(200):
-        shift = shift + dt * foot_shift_rate(shift, missing, LEVEL_1)
+        shift = shift + dt * foot_shift_rate(shift, force_error, LEVEL_1)
         assert np.abs(shift).max() <= LEVEL_1.max_shift * (1 + 1e-12)
-    np.testing.assert_allclose(shift, np.clip(-2e-5 * missing, -0.02, 0.02), atol=1e-9)
+    np.testing.assert_allclose(shift, np.clip(-2e-5 * force_error, -0.02, 0.02), atol=1e-9)
 
 
 def test_the_lag_is_of_first_order():
-    missing = np.array([[0.0, 0.0, 500.0], [0.0, 0.0, 0.0]])
+    force_error = np.array([[0.0, 0.0, 500.0], [0.0, 0.0, 0.0]])
     shift, dt = np.zeros((2, 3)), 1e-4
     for _ in range(round(LEVEL_1.time_constant / dt)):
-        shift = shift + dt * foot_shift_rate(shift, missing, LEVEL_1)
+        shift = shift + dt * foot_shift_rate(shift, force_error, LEVEL_1)
     assert shift[0, 2] == pytest.approx(-0.01 * (1 - np.exp(-1)), rel=1e-3)
 
 

@@ -1,4 +1,4 @@
-"""A program's solution is feasible and the best there is; what is not a number has none."""
+"""Solutions are feasible and optimal; a program with NaN has none."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from humanwalk.control.quadratic_program import QuadraticProgram
 
 
 @given(st.integers(0, 10_000))
-def test_a_programs_solution_is_feasible_and_no_way_along_the_constraints_is_better(seed):
+def test_a_solution_is_feasible_and_no_feasible_direction_decreases_the_cost(seed):
     random = np.random.default_rng(seed)
     root = random.normal(size=(4, 4))
     A, inside = random.normal(size=(4, 6)), random.normal(size=6)
@@ -25,7 +25,7 @@ def test_a_programs_solution_is_feasible_and_no_way_along_the_constraints_is_bet
     values = np.concatenate((x, A @ x))
     assert (values >= lower - 1e-5).all()
     assert (values <= upper + 1e-5).all()
-    # What is convex is least where no feasible point lies downhill; all of them lie towards some point inside.
+    # A convex function is minimal where its slope toward every feasible point is not negative.
     slope = np.concatenate((f, H @ a + program.g))
     others = inside + random.normal(size=(200, 6)) * 0.1
     others -= np.outer((others - inside) @ A[0], A[0]) / (A[0] @ A[0])

@@ -1,4 +1,4 @@
-"""Balance level 1: sole targets that give way until the ground forces are the desired ones."""
+"""Balance level 1: sole targets that move until the ground reaction forces are the desired ones."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def simulator_of(level, schedule=(1, 1), vertical=(WEIGHT / 2, WEIGHT / 2)):
     level.GetInputPort("contact_schedule").FixValue(context, np.array(schedule, dtype=float))
     forces = np.zeros((2, 8))
     forces[:, 2] = vertical
-    # Centres of pressure and moments are not looked at.
+    # Centers of pressure and moments are not used.
     forces[:, 3:] = 7.0
     level.GetInputPort("foot_forces").FixValue(context, forces.ravel())
     return Simulator(level, context)
@@ -49,7 +49,7 @@ def test_ports(level):
 @pytest.mark.parametrize(
     ("schedule", "vertical"), [((1, 1), (WEIGHT / 2, WEIGHT / 2)), ((1, 0), (WEIGHT, 0)), ((0, 0), (0, 0))]
 )
-def test_with_the_desired_forces_the_plan_passes_unchanged(level, schedule, vertical):
+def test_with_the_desired_forces_the_targets_do_not_change(level, schedule, vertical):
     simulator = simulator_of(level, schedule, vertical)
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
@@ -57,7 +57,7 @@ def test_with_the_desired_forces_the_plan_passes_unchanged(level, schedule, vert
     np.testing.assert_allclose(level.GetOutputPort("shifted_targets").Eval(context), TARGETS, atol=1e-12)
 
 
-def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
+def test_the_target_of_an_unloaded_foot_moves_down_and_the_other_up(level):
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     simulator.AdvanceTo(0.1)
     shift, _ = shift_and_rate(level, simulator)
@@ -66,7 +66,7 @@ def test_a_foot_without_its_share_is_pressed_down_and_the_other_drawn_up(level):
     np.testing.assert_allclose(shift.reshape(2, 3)[:, :2], 0.0, atol=1e-12)
 
 
-def test_shift_and_its_rate_are_added_to_the_plan(level):
+def test_shift_and_rate_are_added_to_the_targets(level):
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
@@ -78,7 +78,7 @@ def test_shift_and_its_rate_are_added_to_the_plan(level):
     )
 
 
-def test_the_rate_is_what_the_shift_does_until_the_next_update(level):
+def test_the_shift_changes_at_its_rate_until_the_next_update(level):
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     for k in range(5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
@@ -97,7 +97,7 @@ def test_the_shift_stays_within_its_bound(level):
     np.testing.assert_allclose(rate, 0.0, atol=1e-6)
 
 
-def test_the_period_does_not_change_where_it_goes():
+def test_the_shift_does_not_depend_on_the_period():
     shifts = []
     for period in (PERIOD, PERIOD / 8):
         level = FootForceBalance(WEIGHT, PARAMETERS, period)

@@ -1,4 +1,4 @@
-"""Balance level 2: the spine bends against the lean of the body and leaves every other joint alone."""
+"""Balance level 2: the spine bends against the lean of the body; other joints do not change."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def simulator_of(level, forward=0.0, leftward=0.0, posture=POSTURE):
 
 
 def bend(level, simulator):
-    """What is added to angles and to rates, by joint."""
+    """Bend of angles and rates, by joint."""
     return np.split(level.GetOutputPort("balanced_posture").Eval(simulator.get_context()) - POSTURE, 2)
 
 
@@ -58,7 +58,7 @@ def test_an_upright_body_keeps_its_posture(level):
 
 def test_before_the_first_update_nothing_is_added(level):
     simulator = simulator_of(level, forward=0.2)
-    np.testing.assert_array_equal(np.concatenate(bend(level, simulator)), 0.0)
+    np.testing.assert_allclose(np.concatenate(bend(level, simulator)), 0.0, atol=1e-15)
 
 
 def test_leaning_forward_extends_the_spine_by_the_gain(level, joints):
@@ -83,7 +83,7 @@ def test_leaning_to_the_left_bends_the_spine_to_the_right(level, joints):
 
 
 @pytest.mark.parametrize("lean", [{"forward": 0.1}, {"leftward": 0.1}])
-def test_the_bend_moves_the_centre_of_mass_against_the_lean(level, plant, joints, lean):
+def test_the_bend_moves_the_center_of_mass_against_the_lean(level, plant, joints, lean):
     simulator = simulator_of(level, **lean)
     simulator.AdvanceTo(1.0)
     context = plant.CreateDefaultContext()
@@ -95,7 +95,7 @@ def test_the_bend_moves_the_centre_of_mass_against_the_lean(level, plant, joints
     assert moved[0 if "forward" in lean else 1] < -1e-3
 
 
-def test_rates_are_what_the_angles_do_until_the_next_update(level):
+def test_angles_change_at_their_rates_until_the_next_update(level):
     simulator = simulator_of(level, forward=0.1, leftward=-0.05)
     for k in range(5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
@@ -115,6 +115,6 @@ def test_alpha_follows_with_its_time_constant(level):
     assert alpha == pytest.approx(0.1 * (1 - np.exp(-1)), rel=0.05)
 
 
-def test_a_body_without_a_spine_is_refused():
+def test_a_body_without_a_spine_is_rejected():
     with pytest.raises(ValueError, match="Lumbar_6_Motion"):
         UpperBodyBalance(["Head_Motion"], PARAMETERS, PERIOD)

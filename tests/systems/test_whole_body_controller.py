@@ -1,8 +1,9 @@
-"""The whole-body controller as a system: ports, order of the joints, and how it survives without a solution."""
+"""The whole-body controller as a system: ports, order of the joints, and QP failures."""
 
 import numpy as np
 import pytest
 
+from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Plane
@@ -15,15 +16,15 @@ PERIOD = 0.004
 
 @pytest.fixture
 def controller(plant, skeleton):
-    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {"LeftArmElbowMotion": 0.4}, PERIOD, Plane())
+    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {ARMS["Left"].elbow: 0.4}, PERIOD, Plane())
 
 
 @pytest.fixture
 def standing(plant, joints):
     q = plant.GetPositions(plant.CreateDefaultContext())
-    for side in ("Right", "Left"):
-        for joint, angle in (("Femur", 0.12), ("Tibia", 0.24), ("Ankle", 0.12)):
-            q[joints.q[joints.names.index(f"{side}Leg{joint}Motion")]] = angle
+    for leg in LEGS.values():
+        for joint, angle in ((leg.hip_flexion, 0.12), (leg.knee, 0.24), (leg.ankle, 0.12)):
+            q[joints.q[joints.names.index(joint)]] = angle
     q[6] -= 0.0065
     return np.concatenate((q, np.zeros(plant.num_velocities())))
 
@@ -56,26 +57,26 @@ def test_ports(controller):
     ]
 
 
-def test_both_knees_hold_the_body_up(controller, joints, standing, plan):
+def test_both_knees_support_the_body(controller, joints, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
     torque = controller.GetOutputPort("torque").Eval(context)
     assert controller.GetOutputPort("status").Eval(context) == pytest.approx([1, 0, 0])
-    knee = [torque[joints.names.index(f"{side}LegTibiaMotion")] for side in ("Right", "Left")]
+    knee = [torque[joints.names.index(leg.knee)] for leg in LEGS.values()]
     assert knee[0] == pytest.approx(knee[1], abs=6.0)
-    # A bent knee that carries half the body is extended: negative.
+    # The torque of a bent knee under load is extension: negative.
     assert knee[0] < -10.0
 
 
-def test_arms_go_to_their_posture(controller, joints, standing, plan):
+def test_arms_move_toward_their_posture(controller, joints, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
     rates = controller.GetOutputPort("desired_state").Eval(context)[42:]
-    assert rates[joints.names.index("LeftArmElbowMotion")] > 0.0
-    assert rates[joints.names.index("RightArmElbowMotion")] == pytest.approx(0.0, abs=1e-9)
+    assert rates[joints.names.index(ARMS["Left"].elbow)] > 0.0
+    assert rates[joints.names.index(ARMS["Right"].elbow)] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_failures_are_counted_the_last_torque_is_held_and_then_let_go(controller, standing, plan):
+def test_after_qp_failures_the_last_torque_is_held_for_a_while(controller, standing, plan):
     context = context_with(controller, standing, plan)
     updated(controller, context)
     held = controller.GetOutputPort("torque").Eval(context).copy()
