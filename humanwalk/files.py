@@ -109,7 +109,7 @@ def make_folder(path: Path) -> list[Path]:
         ParameterError: it cannot be made or written into, or its name is no text that other programs can read.
     """
     with file_errors(path, WRITABLE):
-        os.fspath(path).encode()
+        str(path).encode()
         made = [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path, prefix="." + "x" * TEMPORARY_NAME):

@@ -1,14 +1,14 @@
 """What the commands share: the application, consoles, exit codes, options."""
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any
+from typing import IO, Annotated, Any, cast
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from humanwalk.cli.streams import BestEffort
 from humanwalk.quantity import ParameterError, printable
 
 # Drake, matplotlib and pyarrow are imported inside the commands: `--help` should not wait for them.
@@ -37,18 +37,29 @@ class SafeConsole(Console):
         """Print as Rich does; see rich.console.Console.print."""
         super().print(*(_safe(thing) if isinstance(thing, str) else thing for thing in objects), **options)
 
-    def on_broken_pipe(self) -> None:
-        """Print no more, and go on when the reader has stopped: Rich would end the program, and a run be lost."""
-        self.quiet = True
-        with open(os.devnull, "w") as nowhere:
-            os.dup2(nowhere.fileno(), self.file.fileno())
+
+class MessageConsole(SafeConsole):
+    """A console on stderr whose failures are ignored: they would end the program, and a run be lost."""
+
+    def __init__(self) -> None:
+        """Make the console."""
+        super().__init__(stderr=True)
+
+    @property
+    def file(self) -> IO[str]:
+        """The stream; see `BestEffort`."""
+        return cast(IO[str], BestEffort(super().file))
+
+    @file.setter
+    def file(self, new_file: IO[str]) -> None:
+        super(MessageConsole, type(self)).file.__set__(self, new_file)
 
 
 def _safe(text: str) -> str:
     return "\n".join(printable(line, MAX_MESSAGE) for line in text.split("\n"))
 
 
-console = SafeConsole(stderr=True)
+console = MessageConsole()
 """Progress and messages."""
 stdout = SafeConsole()
 """Results, which a shell may redirect."""

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from humanwalk.cli import inspection_commands, run_commands, simulation_commands
 from humanwalk.cli.common import BAD_INPUT, MAX_MESSAGE, app, console
+from humanwalk.cli.streams import discard, exit_on_signals, open_missing
 from humanwalk.quantity import ParameterError, printable
 
 __all__ = ["app", "inspection_commands", "main", "run_commands", "simulation_commands"]
@@ -16,11 +17,19 @@ def main() -> None:
     """Entry point; invalid input produces one line and exit code 2."""
     # Drake's notices (ports, half-spaces) are of no use here; its errors arrive as exceptions.
     logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
+    open_missing()
+    exit_on_signals()
     with _own_log():
         try:
-            app()
-        except ParameterError as error:
-            console.print(f"humanwalk: {printable(error, MAX_MESSAGE)}", style="red", highlight=False, soft_wrap=True)
+            try:
+                app()
+            finally:
+                sys.stdout.flush()
+        except (ParameterError, OSError) as error:
+            # Files are read and written by functions that raise ParameterError; what remains is standard output.
+            text = error if isinstance(error, ParameterError) else f"standard output: {error.strerror or error}"
+            console.print(f"humanwalk: {printable(text, MAX_MESSAGE)}", style="red", highlight=False, soft_wrap=True)
+            discard(sys.stdout)
             sys.exit(BAD_INPUT)
 
 

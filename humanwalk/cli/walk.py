@@ -16,6 +16,7 @@ from humanwalk.files import write_text
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
+from humanwalk.run.monitor import held_signals
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
@@ -61,7 +62,8 @@ def walk_and_write(
         require_room(path, loaded)
         with claimed(path):
             outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
-            run = _write_or_rescue(path, outcome, name)
+            with held_signals():
+                run = _write_or_rescue(path, outcome, name)
     except BaseException:
         # Nothing was recorded: an empty folder would obstruct the next attempt.
         with suppress(OSError):
@@ -110,7 +112,10 @@ def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
     try:
         return outcome.write(path, name)
     except ParameterError as error:
-        rescue = Path(tempfile.mkdtemp(prefix=f"humanwalk-{name}-"))
+        try:
+            rescue = Path(tempfile.mkdtemp(prefix="humanwalk-"))
+        except OSError:
+            raise error from None
         try:
             outcome.write(rescue, name)
         except ParameterError:

@@ -167,6 +167,7 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
         parents = make_folder(path.parent)
         # Of two runs that start together only one makes the folder.
         with file_errors(path, WRITABLE), suppress(FileExistsError):
+            str(path).encode()
             path.mkdir()
             return path, [path, *parents]
         number += 1

@@ -84,11 +84,12 @@ def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path):
         pass
 
 
-def test_ctrl_c_keeps_everything_until_then(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_stopped_run_keeps_everything_until_then(tmp_path, number):
     process = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
     try:
         wait_for(tmp_path / "run" / SUMMARY, process)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         _, errors = process.communicate(timeout=120)
     finally:
         process.kill()
@@ -111,6 +112,54 @@ def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
     process.stderr.close()
     assert process.wait(timeout=60) == 0
     assert Run.open(tmp_path / "run").summary["end"] == "completed"
+
+
+def humanwalk(folder, redirected, *arguments):
+    """Exit code and messages of the command line in a shell that redirects its streams."""
+    command = f'"$0" -c "$1" {" ".join(arguments)} {redirected}'
+    done = subprocess.run(["sh", "-c", command, sys.executable, WALK], cwd=folder, capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
+QUICK = ("walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run")
+
+
+@pytest.mark.parametrize("redirected", ["2>/dev/full", "2>&-", ">&- 2>&-", "<&- >/dev/full"])
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+def test_messages_that_cannot_be_written_do_not_cost_the_run(tmp_path, redirected):
+    code, errors = humanwalk(tmp_path, redirected, *QUICK)
+    assert code == 0, errors
+    assert Run.open(tmp_path / "run").summary["end"] == "completed"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
+def test_results_that_cannot_be_written_are_one_line(tmp_path):
+    code, errors = humanwalk(tmp_path, ">/dev/full", "scenarios")
+    assert code == 2
+    assert errors.splitlines() == ["humanwalk: standard output: No space left on device"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("seed", range(3))
+def test_run_that_is_ended_at_a_random_time_leaves_whole_files_or_none(tmp_path, number, seed):
+    process = start(tmp_path, "--duration", "0.5", "--checkpoint", "0.05")
+    try:
+        wait_for(tmp_path / "run", process)
+        time.sleep(float(np.random.default_rng(seed).uniform(0.0, 2.0)))
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
+        process.communicate()
+    assert "Traceback" not in errors
+    if not (tmp_path / "run").exists():
+        return
+    if SUMMARY in names(tmp_path / "run"):
+        assert Run.open(tmp_path / "run").signals.num_rows > 0
+    else:
+        assert names(tmp_path / "run") <= {SCENARIO, SIGNALS}
+    if number != signal.SIGKILL:
+        assert not [entry for entry in (tmp_path / "run").iterdir() if entry.name.startswith(".")]
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path):
@@ -189,6 +238,26 @@ def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path, monkeypat
     (rescue,) = tmp_path.iterdir()
     assert str(rescue) in str(raised.value)
     assert Run.open(rescue).signals.equals(outcome.signals)
+
+
+def test_full_disk_without_a_folder_for_temporary_files_is_one_line(tmp_path, monkeypatch):
+    outcome = simulate(load_scenario("thesis", {"duration": "0.02"}))
+
+    def none(**options):
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr("tempfile.mkdtemp", none)
+    with pytest.raises(ParameterError, match="No such file or directory"):
+        _write_or_rescue(tmp_path / "gone", outcome, "thesis")
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "\udcff", "a\0b"], ids=["too long", "not UTF-8", "NUL"])
+@pytest.mark.parametrize("wanted", [True, False])
+def test_name_that_files_cannot_have_is_refused_before_the_simulation(tmp_path, monkeypatch, name, wanted):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ParameterError) as raised:
+        new_run_folder(tmp_path / name if wanted else None, name)
+    assert str(raised.value).isprintable()
 
 
 def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_path):
