@@ -46,7 +46,7 @@ class InverseKinematicsParameters:
     """Drake's Jacobian, or central differences as in the thesis (section 1.4)."""
 
     tolerance: float = quantity(1e-6, "m, rad", 1e-10, 1e-2)
-    """Norm of the residual at which a pose counts as reached (the thesis asks for exactly 0)."""
+    """Norm of the residual at which a pose counts as reached (exactly 0 in the thesis)."""
 
     max_iterations: int = quantity(50, "", 1, 1000)
     """Maximum number of Newton steps."""

@@ -88,26 +88,11 @@ class WholeBodyParameters:
     arms: PrescribedGains = PrescribedGains()
     """Posture of arms, shoulder girdle, neck and head."""
 
-    effort: float = quantity(1e-4, "", 0.0, 1.0)
-    """Cost per squared joint acceleration."""
-
-    force: float = quantity(1e-6, "1/N2", 1e-12, 1.0)
-    """Cost per squared contact force."""
-
     friction: float = quantity(0.55, "", 0.1, 1.0)
     """Friction coefficient of the planned contact forces; below that of the ground, 0.7, as a margin."""
 
-    max_force: float = quantity(1500.0, "N", 100.0, 1e4)
-    """Maximum contact force along each edge of a friction pyramid."""
-
     contact_height: float = quantity(0.008, "m", 0.001, 0.05)
     """Height of a contact point above the ground from which on it carries no force."""
-
-    joint_limit_stiffness: float = quantity(900.0, "1/s2", 0.0, 1e4)
-    """Bound of a joint's acceleration toward its limit, per distance from the limit."""
-
-    joint_limit_damping: float = quantity(60.0, "1/s", 0.0, 500.0)
-    """Reduction of that bound per velocity toward the limit."""
 
     knee_margin: float = quantity(0.05, "rad", 0.0, 0.5)
     """Flexion at which the knee's range ends here; a straight leg cannot be shortened."""

@@ -18,6 +18,22 @@ from humanwalk.numerics import Array
 from humanwalk.terrain import Terrain
 from humanwalk.walking.walking_reference import WalkingReference
 
+EFFORT_COST = 1e-4
+"""Cost per squared joint acceleration (our choice): small against the weights of the tasks."""
+
+FORCE_COST = 1e-6
+"""Cost per squared contact force [1/N2] (our choice); distributes the load over the contact points."""
+FORCE_UNIT = FORCE_COST**-0.5
+"""Unit of the forces in the program, whose square costs 1/2 [N]."""
+
+MAX_FORCE = 1500.0
+"""Maximum contact force along each edge of a friction pyramid [N] (our choice): twice the weight of the body."""
+
+JOINT_LIMIT_STIFFNESS = 900.0
+JOINT_LIMIT_DAMPING = 60.0
+"""Bound of a joint's acceleration toward its limit per distance [1/s2] and per velocity [1/s]: a critically damped stop
+with a time constant of 1/30 s (our choice)."""
+
 UNBOUNDED = np.tile(((-1e4,), (1e4,)), 6)
 """Lower and upper bounds of the accelerations of the floating base [rad/s2, m/s2]; never active."""
 
@@ -88,16 +104,15 @@ class WholeBodyQp:
         """Number of velocities whose accelerations are unknown: the first ones."""
         assert gains[: m - 6] == weighted, "the model file has a prescribed joint before a free one"
         self._weight = np.array([g.weight for g in weighted])
-        self._regularization = np.diag(parameters.effort + np.concatenate((np.zeros(6), self._weight)))
+        self._regularization = np.diag(EFFORT_COST + np.concatenate((np.zeros(6), self._weight)))
 
         margin = parameters.knee_margin * np.isin(self.names, JOINT_GROUPS["knee"])
         self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
         torque_limits = np.concatenate((np.zeros(6), self.limits[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
 
-        mu, self._force_unit = parameters.friction, parameters.force**-0.5
-        """Unit of the forces, whose square costs 1/2 [N]."""
-        self._edges_S = self._force_unit * np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
+        mu = parameters.friction
+        self._edges_S = FORCE_UNIT * np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
 
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None if the solver finds none."""
@@ -137,8 +152,8 @@ class WholeBodyQp:
         g[6:] -= self._weight * desired
 
         contacts = soles.contacts(body, reference, self._edges_S, p.contact_height)
-        max_force = np.repeat(p.max_force / self._force_unit * contacts.load, len(self._edges_S))
-        toward_limits = p.joint_limit_stiffness * (self._range - q[: m - 6]) - p.joint_limit_damping * v[: m - 6]
+        max_force = np.repeat(MAX_FORCE / FORCE_UNIT * contacts.load, len(self._edges_S))
+        toward_limits = JOINT_LIMIT_STIFFNESS * (self._range - q[: m - 6]) - JOINT_LIMIT_DAMPING * v[: m - 6]
         bounds = (
             (np.zeros_like(max_force), max_force),
             UNBOUNDED,

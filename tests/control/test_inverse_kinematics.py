@@ -140,7 +140,7 @@ def test_a_straight_leg_is_singular(legs, side):
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("knee", [0.02, 0.1, 0.5, 1.0, 2.0])
-def test_a_straight_knee_bends_towards_a_nearer_target(legs, side, knee):
+def test_a_straight_knee_bends_toward_a_nearer_target(legs, side, knee):
     leg = legs[side]
     theta = STRAIGHT + np.array([0.5 * knee, 0, 0, knee, 0.1, 0, 0])
     solution = solve_inverse_kinematics(leg, leg.X_PS(theta), STRAIGHT)
@@ -213,7 +213,7 @@ def test_no_target_leads_out_of_the_joint_ranges(legs, side, fractions, p, rpy):
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("end", [-1, 1])
 def test_an_ankle_beyond_its_range_is_not_reached(legs, side, end):
-    """With a straight knee no other joint can pitch the sole for the ankle."""
+    """With a straight knee no other joint can replace the ankle's pitch."""
     leg = legs[side]
     theta = STRAIGHT.copy()
     theta[ANKLE] = leg.upper[ANKLE] + 0.3 if end > 0 else leg.lower[ANKLE] - 0.3
@@ -224,7 +224,7 @@ def test_an_ankle_beyond_its_range_is_not_reached(legs, side, end):
     assert solution.theta[ANKLE] == pytest.approx((leg.lower if end < 0 else leg.upper)[ANKLE], abs=1e-6)
 
 
-def test_a_guess_beyond_the_ranges_is_brought_into_them(legs):
+def test_a_guess_beyond_the_ranges_is_clipped(legs):
     leg = legs["Right"]
     solution = solve_inverse_kinematics(leg, leg.X_PS(BENT), np.full(7, 10.0))
     assert_consistent(leg, solution, leg.X_PS(BENT))
@@ -234,7 +234,7 @@ def test_a_guess_beyond_the_ranges_is_brought_into_them(legs):
 
 
 def closed_path(leg, samples=50):
-    """A closed path of the sole that is not in a sagittal plane, walked through once."""
+    """A closed path of the sole that is not in a sagittal plane."""
     for turn in 2 * np.pi * np.arange(1, samples + 1) / samples:
         wobble = np.array([0.3, 0.1, 0.2, 0.3, 0.1, 0.08, 0.1]) * np.sin(turn + np.arange(7.0))
         yield leg.X_PS(BENT + wobble)

@@ -9,7 +9,7 @@ from humanwalk.body import contact_spheres
 from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
-from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
+from humanwalk.control.whole_body_qp import JOINT_LIMIT_STIFFNESS, Posture, WholeBodyQp
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
 from humanwalk.walking.motions import PlanarMotion
@@ -128,7 +128,7 @@ def test_a_nearly_straight_knee_is_not_extended_further(dynamics, qp):
     solution = qp.solve(body, high, rest(qp))
     knee = qp.names.index(LEGS["Right"].knee)
     angle = body.q[dynamics.joints.q[dynamics.joints.names.index(LEGS["Right"].knee)]]
-    bound = PARAMETERS.joint_limit_stiffness * (PARAMETERS.knee_margin - angle)
+    bound = JOINT_LIMIT_STIFFNESS * (PARAMETERS.knee_margin - angle)
     assert solution.acceleration[6 + knee] >= bound - 0.1
 
 

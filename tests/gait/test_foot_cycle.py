@@ -68,7 +68,7 @@ def test_stance_is_a_straight_flat_line_at_constant_speed(path, share):
 @few
 @given(path=paths)
 def test_swing_rises_once_to_the_step_height_and_falls_once(path):
-    """H is what is commanded, not H + L/18 (E9, E26), for low steps as for high ones (E28)."""
+    """The apex is H, not H + L/18 (E9, E26), for low and high steps (E28)."""
     assert_rises_once_and_falls_once(swing_points(path)[:, 1], path.step_height)
 
 
@@ -118,7 +118,7 @@ def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path, drop)
 @few
 @given(path=paths)
 def test_feet_meet_and_leave_the_ground_without_slip(path):
-    """E27: at both ends of swing the foot has the speed of stance, so none over ground."""
+    """E27: at both ends of swing the foot has the velocity of stance, which is zero over ground."""
     for curve, distance in (
         (FootCycle(path)._swing, (1.0 - path.duty_factor) * path.walked_stride),
         (start_swing(path), start_distance(path)),
@@ -142,7 +142,7 @@ def test_start_swing_goes_from_standing_to_touchdown(path):
 
 @few
 @given(path=paths, tau=st.lists(st.floats(0.0, 1.0), min_size=20, max_size=20))
-def test_the_table_is_within_a_micrometre_of_the_exact_law(path, tau):
+def test_the_table_is_within_a_micrometer_of_the_exact_law(path, tau):
     law = thesis_swing if path.swing == "thesis" else smooth_swing
     x, z = np.array([0.0, 0.3, 0.7, 1.0]) * path.step_length, np.array([0, 1, 0.9, 0.0])
     z *= path.step_height
@@ -169,7 +169,7 @@ def test_thesis_swing_goes_through_the_points_of_appendix_a():
         assert np.linalg.norm(curve - point, axis=1).min() < 2e-5
 
 
-def test_thesis_swing_is_walked_by_arc_length():
+def test_thesis_swing_is_a_function_of_arc_length():
     x, z = np.array([0.0, 0.25, 0.5]), np.array([0.0, 0.2, 0.0])
     tangents = np.array([[-0.125, 0.0], [0.25, 0.0], [-0.125, 0.0]])
     curve = ArcLength(CubicHermite(np.column_stack([x, z]), tangents))
@@ -181,15 +181,15 @@ def test_thesis_swing_is_walked_by_arc_length():
 
 @few
 @given(path=paths)
-def test_the_thesis_swing_never_halts_on_its_path(path):
+def test_the_thesis_swing_does_not_stop_on_its_path(path):
     """The arc length grows monotonically for every allowed size: s' > 0."""
     cycle = FootCycle(replace(path, swing="thesis"))
     speeds = [np.hypot(*cycle.derivative(p)) for p in np.linspace(0.0, 1.0, 401)]
     assert min(speeds) > path.step_length
 
 
-def test_smooth_swing_asks_for_far_less_acceleration():
-    """Why there is a second law: peak acceleration of the foot at the default sizes."""
+def test_smooth_swing_has_far_smaller_accelerations():
+    """The reason for a second law: peak acceleration of the foot at the default sizes."""
     phases, peak = np.linspace(0.0, 1.0, 4001), {}
     for law in LAWS:
         cycle = FootCycle(FootPathParameters(swing=law))
@@ -237,7 +237,7 @@ def test_a_step_longer_than_two_legs_has_no_offset(length):
 
 @pytest.mark.parametrize("field", ["step_length", "step_height", "offset", "duty_factor"])
 @pytest.mark.parametrize("value", [-0.1, 50.0, math.nan])
-def test_values_out_of_range_are_refused(field, value):
+def test_values_out_of_range_are_rejected(field, value):
     with pytest.raises(ValueError, match=f"{field}: .*allowed"):
         FootPathParameters(**{field: value})
 

@@ -48,13 +48,13 @@ def test_no_ramp_starts_at_full_speed():
     assert (ramp.distance(2.0), ramp.speed_at(0.0), ramp.acceleration(0.0)) == (2.0, 1.0, 0.0)
 
 
-def test_speed_zero_stands_for_ever():
+def test_with_speed_zero_the_body_stands():
     assert SpeedRamp(0.0).distance(100.0) == 0.0
     assert math.isinf(SpeedRamp(0.0).time_at(0.1))
 
 
 @pytest.mark.parametrize("field", ["speed", "duration"])
 @pytest.mark.parametrize("value", [-0.1, 140.0, math.nan])
-def test_values_out_of_range_are_refused(field, value):
+def test_values_out_of_range_are_rejected(field, value):
     with pytest.raises(ValueError, match=f"{field}: .*allowed"):
         SpeedRamp(**{field: value})

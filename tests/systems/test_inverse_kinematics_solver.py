@@ -212,7 +212,7 @@ def walked(plant, gait, skeleton):
 
 def test_the_thesis_walk_is_within_reach(walked):
     times, _, _, status = walked
-    # The straight leg of the first 0.1 s falls short by hundredths of a millimetre: the pelvis has hardly sunk yet.
+    # The straight leg of the first 0.1 s falls short by hundredths of a millimeter: the pelvis has hardly dropped yet.
     assert status[:, :2].max() < 5e-5
     np.testing.assert_array_equal(status[times > 0.1, 4:], 1.0)
 

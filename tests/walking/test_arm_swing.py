@@ -69,6 +69,6 @@ def test_the_elbow_never_extends_beyond_straight(flexion, amplitude, phase):
 
 @pytest.mark.parametrize("field", ["shoulder_amplitude", "elbow_flexion", "elbow_amplitude"])
 @pytest.mark.parametrize("value", [-0.1, 20.0, np.nan])
-def test_values_out_of_range_are_refused(field, value):
+def test_values_out_of_range_are_rejected(field, value):
     with pytest.raises(ValueError, match=f"{field}: .*allowed"):
         ArmSwingParameters(**{field: value})
