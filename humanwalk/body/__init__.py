@@ -2,17 +2,13 @@
 
 from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
 from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_spheres, sole_patches
-from humanwalk.body.limbs import LEGS
 from humanwalk.body.sdf import MODEL_NAME, to_sdf
 from humanwalk.body.shapes import Box, Cylinder
 from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 from humanwalk.sides import SIDES, Side
 
-LEG_JOINTS = {side: leg.chain for side, leg in LEGS.items()}
-
 __all__ = [
     "HYDRO_SET",
-    "LEG_JOINTS",
     "MODEL_NAME",
     "POINT_SET",
     "REFERENCE_MASS",

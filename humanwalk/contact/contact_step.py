@@ -23,6 +23,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 from pydrake.systems.framework import Context
+from scipy.linalg.lapack import dposv
 
 from humanwalk.contact.asperity import (
     AsperityParameters,
@@ -82,14 +83,20 @@ class Contacts(NamedTuple):
     Attributes:
         p_WQ: Points [m], shape (n, 3).
         f_S: Force on each point along the surface's x, y and normal [N], shape (n, 3).
-        f_W: The same in W [N], shape (n, 3).
+        R_SW: Axes of the surface at each point, shape (n, 3, 3).
         memory: For the next step.
     """
 
     p_WQ: Array
     f_S: Array
-    f_W: Array
+    R_SW: Array
     memory: ContactMemory
+
+    @property
+    def f_W(self) -> Array:
+        """Force on each point in W [N], shape (n, 3)."""
+        force: Array = np.vecmat(self.f_S, self.R_SW)
+        return force
 
     def __deepcopy__(self, memo: object) -> Self:
         """Return the object itself, which is never changed; Drake copies abstract values often."""
@@ -138,18 +145,18 @@ class ContactStep:
         v_last = (J @ (2.0 * V - memory.V).reshape(b, 6, 1)).reshape(-1, 3)
         Y = (J @ mobility.reshape(b, 6, -1)).reshape(p_WQ.size, -1)
         z = z_last = memory.F @ mobility
-        identity, grip = np.eye(len(z)), memory.grip
+        f0, grip, identity = self._pressure - K * e, memory.grip, np.eye(len(z)) / h
         for passes in range(MAX_PASSES):
             # The linear law f0 - B v, multiplied by the grip that each point is assumed to have.
             B = C + h * K
-            f0 = self._pressure - K * e
-            matrix = Y.T @ ((grip * B).ravel()[:, None] * Y) + identity / h
-            solved = np.linalg.solve(matrix, z_last + (grip * (B * v_last - f0)).ravel() @ Y)
+            matrix = Y.T @ ((grip * B).reshape(-1, 1) * Y) + identity
+            _, solved, _ = dposv(matrix, z_last + (grip * (B * v_last - f0)).ravel() @ Y)
             z = solved if passes < FULL_PASSES else 0.5 * (z + solved)
             v = v_last - (Y @ z).reshape(-1, 3)
 
             # The law with its bounds at the end of the step.
-            C = np.where(v > 0.0, self._C_rising, self._C)
+            if parameters.separation_damping != 1.0:
+                C = np.where(v > 0.0, self._C_rising, self._C)
             end = e + h * v
             linear = self._pressure - K * end - C * v
             f_n = normal_force(parameters, linear[:, 2], end[:, 2])
@@ -159,15 +166,21 @@ class ContactStep:
 
             # Another pass if other points press or slide than was assumed.
             assumed, sticks = grip, limit_ratio(norm(f_t), norm(linear[:, :2]))
-            grip = np.column_stack((sticks, sticks, f_n != 0.0))
+            grip = in_rows(sticks[:, None], f_n != 0.0)
             if (np.abs(grip - assumed) <= GRIP_TOLERANCE * assumed).all():
                 break
-        f_S = np.column_stack((f_t, f_n))
-        f_W = np.vecmat(f_S, R_SW)
+        f_S = in_rows(f_t, f_n)
         # The anchors stay behind the points by the stretch that the springs keep.
         dragged = np.vecmat(end[:, :2] * (1.0 - kept)[:, None] - e[:, :2], R_SW[:, :2])
         F = (f_S.reshape(b, 1, -1) @ J).ravel()
-        return Contacts(p_WQ, f_S, f_W, ContactMemory(p_WQ + dragged, load * (f_n != 0.0), grip, V, F))
+        return Contacts(p_WQ, f_S, R_SW, ContactMemory(p_WQ + dragged, load * (f_n != 0.0), grip, V, F))
+
+
+def in_rows(tangential: Array, normal: Array) -> Array:
+    """Return n points' values along the surface, shape (n, 2) or (n, 1), and along its normal, (n,), as (n, 3)."""
+    rows = np.empty((len(normal), 3))
+    rows[:, :2], rows[:, 2] = tangential, normal
+    return rows
 
 
 def point_jacobians(r: Array, R_SW: Array) -> Array:

@@ -63,11 +63,16 @@ class AsperityContact(LeafSystem):
         self._terrain, self._joint_impedance = terrain, joint_impedance
         patches = [patch for foot in feet.values() for patch in foot]
         self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
-        self._p_BQ = [patch.p_BoQ_B for patch in patches]
+        self._frames, self._world = [body.body_frame() for body in self._bodies], plant.world_frame()
+        # The origin comes first, so that one call returns it together with the points.
+        self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
         area = np.array([patch.area for patch in patches])
         b, k = area.shape
         rank = int(np.linalg.matrix_rank(body_jacobians(plant, self._plant_context, self._bodies)))
         self._contact_step = ContactStep(parameters, terrain, area, plant.time_step())
+        self._forces = [ExternallyAppliedSpatialForce() for _ in self._bodies]
+        for force, body in zip(self._forces, self._bodies, strict=True):
+            force.body_index = body.index()
         ends = k * np.cumsum([0, *map(len, feet.values())])
         self._points_of_feet = [slice(*ends) for ends in pairwise(ends)]
 
@@ -96,12 +101,11 @@ class AsperityContact(LeafSystem):
         """Origins of the bodies (b, 3), their points (b k, 3) and their velocities (6 b) in W."""
         inner = self._plant_context
         self._plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        X_WB = [body.EvalPoseInWorld(inner) for body in self._bodies]
-        p_WQ = np.concatenate(
-            [p_BQ @ X.rotation().matrix().T + X.translation() for X, p_BQ in zip(X_WB, self._p_BQ, strict=True)]
-        )
+        bodies = zip(self._frames, self._points, strict=True)
+        points = [self._plant.CalcPointsPositions(inner, frame, p_BQ, self._world).T for frame, p_BQ in bodies]
+        p_W = np.array(points)
         V = np.concatenate([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
-        return np.array([X.translation() for X in X_WB]), p_WQ, V
+        return p_W[:, 0], p_W[:, 1:].reshape(-1, 3), V
 
     def _calc_contacts(self, context: Context, output: Value) -> None:
         p_WB, p_WQ, V = self._kinematics(context)
@@ -135,14 +139,12 @@ class AsperityContact(LeafSystem):
         return EventStatus.Succeeded()
 
     def _calc_forces(self, context: Context, output: Value) -> None:
-        forces = []
         wrenches = self._contacts.Eval(context).memory.F.reshape(-1, 6)
-        for body, wrench in zip(self._bodies, wrenches, strict=True):
-            force = ExternallyAppliedSpatialForce()
-            force.body_index, force.F_Bq_W = body.index(), SpatialForce(wrench)
-            forces.append(force)
-        output.set_value(forces)
+        for force, wrench in zip(self._forces, wrenches, strict=True):
+            force.F_Bq_W = SpatialForce(wrench)
+        output.set_value(self._forces)
 
     def _calc_feet(self, context: Context) -> list[FootForce]:
         contacts = self._contacts.Eval(context)
-        return [foot_force(contacts.p_WQ[foot], contacts.f_W[foot], self._terrain) for foot in self._points_of_feet]
+        p_WQ, f_W = contacts.p_WQ, contacts.f_W
+        return [foot_force(p_WQ[foot], f_W[foot], self._terrain) for foot in self._points_of_feet]

@@ -14,6 +14,8 @@ from humanwalk.numerics import Array
 from humanwalk.systems.foot_signals import declare_foot_signals
 from humanwalk.terrain import Terrain
 
+NO_MOMENT = np.zeros(3)
+
 
 class FootForceObserver(LeafSystem):
     """Sums the plant's contacts with the ground, point and hydroelastic, over the bodies of each foot.
@@ -57,22 +59,28 @@ class FootForceObserver(LeafSystem):
 
     def _calc_feet(self, context: Context) -> list[FootForce]:
         results = self._contacts.Eval(context)
-        # Of every contact of a foot: point, force and moment in W, shape (3, 3).
-        contacts: dict[Side, list[Array]] = {side: [] for side in SIDES}
+        # Of every contact of a foot: sign; point, force on B and moment on B in W.
+        signs: dict[Side, list[float]] = {side: [] for side in SIDES}
+        contacts: dict[Side, list[tuple[Array, Array, Array]]] = {side: [] for side in SIDES}
 
         def add(A: BodyIndex, B: BodyIndex, point: Array, force: Array, moment: Array) -> None:
             if (A, B) in self._foot:
                 side, sign = self._foot[A, B]
-                contacts[side].append(np.array((point, sign * force, sign * moment)))
+                signs[side].append(sign)
+                contacts[side].append((point, force, moment))
 
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
-            add(pair.bodyA_index(), pair.bodyB_index(), pair.contact_point(), pair.contact_force(), np.zeros(3))
+            add(pair.bodyA_index(), pair.bodyB_index(), pair.contact_point(), pair.contact_force(), NO_MOMENT)
         for i in range(results.num_hydroelastic_contacts()):
             info = results.hydroelastic_contact_info(i)
             surface, F = info.contact_surface(), info.F_Ac_W()
             # The force is that on M, at the centroid.
             N, M = self._body_of_geometry[surface.id_N()], self._body_of_geometry[surface.id_M()]
             add(N, M, surface.centroid(), F.translational(), F.rotational())
-        feet = (np.array(contacts[side]).reshape(-1, 3, 3) for side in SIDES)
-        return [foot_force(foot[:, 0], foot[:, 1], self._terrain, foot[:, 2]) for foot in feet]
+        feet = []
+        for side in SIDES:
+            p_WQ, f_W, m_W = np.array(contacts[side]).reshape(-1, 3, 3).swapaxes(0, 1)
+            sign = np.array(signs[side])[:, None]
+            feet.append(foot_force(p_WQ, sign * f_W, self._terrain, sign * m_W))
+        return feet
