@@ -4,7 +4,6 @@ pydrake's typed loader assigns to fields, so it cannot make frozen dataclasses, 
 """
 
 import dataclasses
-import math
 import re
 import reprlib
 import typing
@@ -46,7 +45,9 @@ for _tag, _pattern, _first in (
 
 
 def _construct_number(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int | float:
-    return float(node.value) if re.search(r"[.eE]", node.value) else int(node.value)
+    # YAML writes .inf and .nan where Python writes inf and nan.
+    number = re.sub(r"\.(?=[a-zA-Z])", "", node.value)
+    return int(number) if re.fullmatch(r"[-+]?[0-9]+", number) else float(number)
 
 
 for _tag in ("int", "float"):
@@ -117,29 +118,32 @@ def _require_keys_once(mapping: yaml.MappingNode, name: str) -> None:
         lines[key.value] = line
 
 
-def override(data: dict[str, Any], field: str, text: str) -> None:
-    """Replace a value in a mapping by its dotted field name.
+def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> None:
+    """Replace a value in the mapping of a dataclass of parameters by its dotted field name.
 
     Args:
+        kind: the dataclass.
         data: the mapping, changed in place; a choice may stand in it as its tag.
         field: `controller.balanced.planner.dcm_gain`.
         text: the value as in YAML.
 
     Raises:
-        ParameterError: the text is not YAML, or the name leads through a value, or through another choice.
+        ParameterError: the text is not YAML, or the name leads into a value or into another choice.
     """
     value = read_yaml(f"value: {text}", f"--set {field}")["value"]
+    choices = {name for name, found in fields_of(kind) if "choices" in found.metadata}
     *parents, leaf = field.split(".")
-    for place, parent in enumerate(parents):
-        child = data.setdefault(parent, {})
-        if child is None or child == {} or (isinstance(child, str) and child == (*parents, leaf)[place + 1]):
-            child = data[parent] = {} if not isinstance(child, str) else {child: {}}
-        if not isinstance(child, dict):
+    for depth, parent in enumerate(parents, 1):
+        group, name, below = data.get(parent), ".".join(parents[:depth]), [*parents, leaf][depth]
+        if group is None or (name in choices and group == below):
+            group = data[parent] = {}
+        tag = next(iter(group), below) if isinstance(group, dict) else group
+        if not isinstance(group, dict) or (name in choices and tag != below):
             raise ParameterError(
-                f"{field}: {parent} is {shown(child)}, which has no such fields; allowed: fields of {shown(child)}; "
-                f"replace {parent} as a whole first (--set {'.'.join(parents[: place + 1])}=...)"
+                f"{field}: {name} is {shown(tag)}; allowed: fields of {shown(tag)}; choose another with "
+                f"--set {name}=... before"
             )
-        data = child
+        data = group
     data[leaf] = value
 
 
@@ -206,7 +210,7 @@ def _build(kind: Any, value: Any, place: _Place) -> Any:
     """`value` out of a YAML file as an instance of the annotated type `kind`."""
     origin = typing.get_origin(kind)
     if dataclasses.is_dataclass(kind):
-        return _build_dataclass(kind, {} if value is None else value, place)
+        return _build_dataclass(kind, value, place)
     if origin is Literal:
         choices = typing.get_args(kind)
         if value not in choices:
@@ -262,10 +266,10 @@ def _build_choice(choices: Mapping[str, type[Any]], value: Any, place: _Place) -
         tag, entry = value, None
     if not isinstance(tag, str) or tag not in choices:
         raise ParameterError(
-            f"{place}: {shown(value if isinstance(value, dict) and len(value) != 1 else tag)} is unknown; allowed: one "
-            f"of {', '.join(choices)}, or one of them with its fields{did_you_mean(shown(tag), tuple(choices))}"
+            f"{place}: {shown(tag)} is unknown; allowed: {', '.join(choices)}, alone or with fields"
+            f"{did_you_mean(shown(tag), tuple(choices))}"
         )
-    return _build(choices[tag], entry, place / tag)
+    return _build(choices[tag], {} if entry is None else entry, place / tag)
 
 
 def _hint(name: str, fields: Mapping[str, Any], place: _Place) -> str:
@@ -305,8 +309,6 @@ def _build_scalar(kind: Any, value: Any, place: _Place) -> Any:
         raise ParameterError(f"{place}: {shown(value)} is out of range; write a smaller number")
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
-    if kind is str and isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
-        return str(value)
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         raise ParameterError(f"{place}: {shown(value)} is not {wanted}; write {wanted}")
     return value
@@ -316,6 +318,6 @@ def shown(value: Any) -> str:
     """A value for an error message: short, on one line."""
     try:
         # Aliases of aliases may stand for more than memory holds: no more is looked at than is shown.
-        return printable(value if isinstance(value, str) else _BRIEF.repr(value), 40)
+        return printable(_BRIEF.repr(value), 40)
     except ValueError:
         return "a number of too many digits"  # Python refuses to write it

@@ -157,7 +157,7 @@ def parse_scenario(
     data = read_yaml(text, name)
     anchor_paths(Scenario, data, folder)
     for field, value in (overrides or {}).items():
-        override(data, field, value)
+        override(Scenario, data, field, value)
     return build(Scenario, data)
 
 
