@@ -75,8 +75,9 @@ MIN_TIME_STEP = 1e-5
 class RecordingParameters:
     """What is kept of a run."""
 
-    signal_period: float = quantity(0.005, "s", 0.0005, 0.1)
-    """Time between two rows of the signals."""
+    signal_period: float = quantity(0.004, "s", 0.0005, 0.1)
+    """Time between two rows of the signals. The discrete plant changes at multiples of `time_step` only: other periods
+    cost evaluations between its steps and show the last one."""
 
     frame_rate: float = quantity(32.0, "1/s", 1.0, 240.0)
     """Frames per second of the replay."""

@@ -21,7 +21,10 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
 
     Exported outputs: state (97), net_actuation (42), contact_results, query_object, and every `Signal` of a subsystem
     under its name: desired_state (84), torque (42), saturated (42), soles (6), com (6), foot_forces (16),
-    friction_use (2), push (3), and those of the controller. Joints come in actuator order.
+    friction_use (2), push (3), and those of the controller: ik_status (6), pelvis_reference (13), phase (2),
+    contact_schedule (2), support_wrench (6), foot_shift (12), alpha (4) (thesis); phase (2), contact_schedule (2),
+    command (3), balance (9), qp_status (3) (balanced); pelvis_reference (13), support_wrench (6) (recorded). Joints
+    come in actuator order.
 
     Exported input: feedforward (42), torque added to every actuator's law [N m]; optional, and only where the
     controller has none of its own.

@@ -25,7 +25,7 @@ LEVELS = {
 }
 UNSUPPORTED = {"controller.thesis.balance.support.enabled": "false"}
 HYDROELASTIC = {"contact": "hydroelastic"}
-ASPERITY = {"contact": "asperity"}
+ASPERITY = {"contact": "asperity", "simulation.time_step": "0.001"}
 CENIC = {"simulation.integrator": "cenic", "simulation.time_step": "0"}
 EXPLICIT = {
     "actuation.pd.law": "explicit",

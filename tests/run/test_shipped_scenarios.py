@@ -2,6 +2,7 @@
 
 import pytest
 
+from humanwalk.choices import ThesisController
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario, shipped_scenarios
 
@@ -12,5 +13,5 @@ def test_shipped_scenario_walks_for_a_moment(name, tmp_path):
     assert outcome.end == "completed"
     run = outcome.write(tmp_path, name)
     assert run.summary["survived"] is True
-    assert run.summary["external_support"] is (load_scenario(name).controller == "thesis")
+    assert run.summary["external_support"] is isinstance(load_scenario(name).controller, ThesisController)
     assert run.signals.num_rows == 21

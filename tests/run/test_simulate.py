@@ -277,7 +277,9 @@ def test_a_simulation_starts_with_the_velocities_of_the_scenario():
     scenario = thesis(0.1, start__rate_noise="0.1")
     prepared = prepare(scenario)
     context = prepared.plant.GetMyContextFromRoot(prepared.simulator.get_context())
-    np.testing.assert_array_equal(prepared.plant.GetVelocities(context), start_velocities(scenario))
+    np.testing.assert_array_equal(
+        prepared.plant.GetVelocities(context), start_velocities(scenario.subject, scenario.start, scenario.seed)
+    )
 
 
 def test_the_same_scenario_gives_the_same_record():
