@@ -10,7 +10,6 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.choices.controller import Command
 from humanwalk.choices.world import World
 from humanwalk.control.pd_control import PD_LAWS, PdLaw, install_gains
 from humanwalk.numerics import Array
@@ -26,8 +25,10 @@ class Actuation(Protocol):
     def step_impedance(self, step: float, kp: Array, kd: Array) -> tuple[Array, Array]:
         """The law's `StepImpedance` with these gains, shape (n,) each."""
 
-    def add_to(self, world: World, command: Command) -> None:
-        """Add `actuators` between a command and the plant.
+    def add_to(self, world: World) -> None:
+        """Add the system `actuators`, whose inputs are those of `PdActuatorBank`, and connect it with the plant.
+
+        The inputs that a `Command` has are connected later.
 
         Raises:
             ParameterError: the law is not stable at the plant's time step.
@@ -55,7 +56,7 @@ class PdActuation:
         """See `Actuation`."""
         return PD_LAWS[self.law].impedance(step, kp, kd)
 
-    def add_to(self, world: World, command: Command) -> None:
+    def add_to(self, world: World) -> None:
         """See `Actuation`."""
         plant, builder = world.plant, world.builder
         limits = JointMap.of(world.model).effort_limits
@@ -66,10 +67,7 @@ class PdActuation:
             PdActuatorBank(plant, world.kp, world.kd, self.law, limits),
             state=world.state,
             net_actuation=plant.get_net_actuation_output_port(),
-            **command.ports,
         )
-        if command.feedforward is None:
-            builder.ExportInput(bank.GetInputPort("feedforward"), "feedforward")
         builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
         if PD_LAWS[self.law].takes_desired_state:
             builder.Connect(

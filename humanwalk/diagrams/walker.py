@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer, MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
+from humanwalk.choices.controller import Command
 from humanwalk.choices.pushes import add_pushes
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.world import add_world
@@ -38,8 +39,8 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     """
     builder = DiagramBuilder()
     world = add_world(builder, scenario, visuals)
-    command = scenario.controller.add_to(world)
-    scenario.actuation.add_to(world, command)
+    scenario.actuation.add_to(world)
+    _connect_command(builder, scenario.controller.add_to(world))
     add_pushes(world, scenario.pushes)
     _connect_spatial_forces(builder, world.plant, world.spatial_forces)
     for name, port in (
@@ -58,6 +59,15 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
 def make_diagram(scenario: Scenario, visuals: bool = True) -> Diagram:
     """The walker of a scenario, or its playback where the controller has no physics."""
     return make_walker(scenario, visuals) if scenario.controller.physics else make_playback(scenario)
+
+
+def _connect_command(builder: DiagramBuilder, command: Command) -> None:
+    """Connect a command with the actuators; a feedforward that it lacks becomes an input of the diagram."""
+    actuators = builder.GetSubsystemByName("actuators")
+    for name, port in command.ports.items():
+        builder.Connect(port, actuators.GetInputPort(name))
+    if command.feedforward is None:
+        builder.ExportInput(actuators.GetInputPort("feedforward"), "feedforward")
 
 
 def _connect_spatial_forces(builder: DiagramBuilder, plant: MultibodyPlant, ports: Sequence[OutputPort]) -> None:

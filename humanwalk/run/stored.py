@@ -101,11 +101,11 @@ def required_columns(physics: bool) -> set[str]:
     """Columns of every record: pelvis, joints, soles and center of mass; with physics also torques and forces."""
     vectors = {"pelvis.": "m", "pelvis.velocity_": "m_s", "pelvis.angular_velocity_": "rad_s"}
     vectors |= {"com.": "m", "com.velocity_": "m_s"} | {f"{side.lower()}_sole.": "m" for side in SIDES}
-    joint_signals = ["angle_rad", "velocity_rad_s", "desired_angle_rad", "desired_velocity_rad_s"]
+    joint_signals = ["angle_rad", "velocity_rad_s"]
     columns = {TIME, *(f"pelvis.quaternion_{axis}" for axis in "wxyz")}
     if physics:
         feet = [f"{side.lower()}_foot." for side in SIDES]
-        joint_signals += ["torque_N_m", "saturated"]
+        joint_signals += ["desired_angle_rad", "desired_velocity_rad_s", "torque_N_m", "saturated"]
         vectors |= {f"{foot}force_": "N" for foot in feet} | {f"{foot}cop_": "m" for foot in feet}
         columns |= {f"{foot}{name}" for foot in feet for name in ("free_moment_N_m", "loaded")}
     columns |= {f"{prefix}{axis}_{unit}" for prefix, unit in vectors.items() for axis in "xyz"}

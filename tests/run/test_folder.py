@@ -15,7 +15,7 @@ from humanwalk.scenario import load_scenario
 
 @pytest.fixture
 def outcome(columns):
-    time = 0.005 * np.arange(50)
+    time = 0.004 * np.arange(50)
     signals = pa.table({TIME: time, **{name: np.full_like(time, i) for i, name in enumerate(columns)}})
     return Outcome(load_scenario("thesis", {"seed": "5", "duration": "0.5"}), signals, "completed", wall_time=1.0)
 

@@ -9,9 +9,10 @@ from humanwalk.scenario import load_scenario, shipped_scenarios
 
 @pytest.mark.parametrize("name", shipped_scenarios())
 def test_shipped_scenario_walks_for_a_moment(name, tmp_path):
-    outcome = simulate(load_scenario(name, {"duration": "0.1"}))
+    scenario = load_scenario(name, {"duration": "0.1"})
+    outcome = simulate(scenario)
     assert outcome.end == "completed"
     run = outcome.write(tmp_path, name)
     assert run.summary["survived"] is True
-    assert run.summary["external_support"] is isinstance(load_scenario(name).controller, ThesisController)
-    assert run.signals.num_rows == 21
+    assert run.summary["external_support"] is isinstance(scenario.controller, ThesisController)
+    assert run.signals.num_rows == 1 + round(0.1 / scenario.recording.signal_period)
