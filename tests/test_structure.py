@@ -29,23 +29,6 @@ LABELS = {("view/plots/gait_cycle.py", "Pelvis")}
 """Headings of figures that happen to be names of the body."""
 
 
-PENDING: dict[str, dict[str, str]] = {
-    "array": {
-        "h5": "measures/effort.py measures/summary.py",
-    },
-}
-"""Modules that are still to be changed, by rule and owner; the marks go on 2026-11-22."""
-
-
-def pending(modules: list[str], rule: str) -> list[object]:
-    """The modules as parameters; those that are still to be changed must fail."""
-    owners = {module: owner for owner, names in PENDING.get(rule, {}).items() for module in names.split()}
-    return [
-        pytest.param(name, marks=pytest.mark.xfail(strict=True, reason=owners[name])) if name in owners else name
-        for name in modules
-    ]
-
-
 @cache
 def tree(module: str) -> ast.Module:
     return ast.parse((PACKAGE / module).read_text(encoding="utf-8"))
@@ -105,7 +88,7 @@ def test_plain_words_are_not_names_of_the_body(text):
     assert names_of_the_body(text) == []
 
 
-@pytest.mark.parametrize("module", pending(FREE_OF_BODY_NAMES, "name"))
+@pytest.mark.parametrize("module", FREE_OF_BODY_NAMES)
 def test_bodies_and_joints_are_named_in_body_and_exchange_only(module):
     found = [(line, name) for line, text in strings(tree(module)) for name in names_of_the_body(text)]
     assert [(line, name) for line, name in found if (module, name) not in LABELS] == [], "use humanwalk.body.limbs"
@@ -120,7 +103,7 @@ def test_no_import_circle_not_even_a_lazy_one_or_one_for_types():
         pytest.fail(f"import circle: {' <- '.join(error.args[1])}")
 
 
-@pytest.mark.parametrize("module", pending(MODULES, "size"))
+@pytest.mark.parametrize("module", MODULES)
 def test_files_and_classes_are_short(module):
     assert len((PACKAGE / module).read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
     classes = [node for node in ast.walk(tree(module)) if isinstance(node, ast.ClassDef)]
@@ -128,7 +111,7 @@ def test_files_and_classes_are_short(module):
     assert {name: length for name, length in lengths.items() if length > LONGEST_CLASS} == {}
 
 
-@pytest.mark.parametrize("module", pending(sorted({*MODULES} - {"numerics/__init__.py"}), "array"))
+@pytest.mark.parametrize("module", [module for module in MODULES if module != "numerics/__init__.py"])
 def test_array_types_are_those_of_numerics(module):
     lines = [
         node.lineno for node in ast.walk(tree(module)) if isinstance(node, ast.Attribute) and node.attr == "NDArray"
@@ -136,13 +119,13 @@ def test_array_types_are_those_of_numerics(module):
     assert lines == [], "import Array, Indices or Mask from humanwalk.numerics"
 
 
-@pytest.mark.parametrize("module", pending(SYSTEMS, "port"))
+@pytest.mark.parametrize("module", SYSTEMS)
 def test_ports_are_taken_by_name(module):
     functions = [node.name for node in ast.walk(tree(module)) if isinstance(node, ast.FunctionDef)]
     assert [name for name in functions if re.fullmatch(r"get_\w+_port", name)] == []
 
 
-@pytest.mark.parametrize("module", pending(SYSTEMS, "file"))
+@pytest.mark.parametrize("module", SYSTEMS)
 def test_every_leaf_system_has_a_test_file_of_its_name(module):
     bases = [
         ast.unparse(base) for node in ast.walk(tree(module)) if isinstance(node, ast.ClassDef) for base in node.bases

@@ -79,10 +79,10 @@ def profiled(seconds: Callable[[], float] = time.thread_time) -> Iterator[Exclus
 
     for name, original in declare.items():
         setattr(LeafSystem, name, timing(original))
-    InputPort.Eval = read
+    InputPort.Eval = read  # type: ignore[method-assign]
     try:
         yield clock
     finally:
         for name, original in declare.items():
             setattr(LeafSystem, name, original)
-        InputPort.Eval = eval_port
+        InputPort.Eval = eval_port  # type: ignore[method-assign]

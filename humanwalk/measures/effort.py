@@ -3,10 +3,10 @@
 from typing import TypedDict
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from humanwalk.measures.signals import TIME, matrix
+from humanwalk.numerics import Indices, Mask
 from humanwalk.quantity import GRAVITY
 
 
@@ -23,7 +23,7 @@ def joint_names(signals: pa.Table) -> list[str]:
     return [name.removesuffix(ending) for name in signals.column_names if name.endswith(ending)]
 
 
-def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: float) -> float | None:
+def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | None:
     """Mechanical cost of transport: time integral of sum |torque x rate| over m g d, without recovery of negative work.
 
     Args:
@@ -44,7 +44,7 @@ def cost_of_transport(signals: pa.Table, rows: npt.NDArray[np.bool_], mass: floa
     return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
 
 
-def joint_work(signals: pa.Table, touchdowns: npt.NDArray[np.int_]) -> dict[str, JointWork] | None:
+def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
     Args:

@@ -5,7 +5,6 @@ from importlib.metadata import version
 from typing import Any, TypedDict
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
@@ -13,7 +12,7 @@ from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.numerics import Array
+from humanwalk.numerics import Array, Mask
 from humanwalk.scenario import Scenario
 
 
@@ -123,7 +122,7 @@ def foot_line_error(signals: pa.Table, side: Side) -> float:
     return float(np.abs(y - y[0]).max())
 
 
-def pelvis_tracking(signals: pa.Table, rows: npt.NDArray[np.bool_]) -> float | None:
+def pelvis_tracking(signals: pa.Table, rows: Mask) -> float | None:
     """Root mean square distance of the pelvis from its walking reference [m]."""
     if not rows.any() or "pelvis.reference_x_m" not in signals.column_names:
         return None
@@ -140,7 +139,7 @@ def qp_failures(signals: pa.Table) -> int | None:
     return int(counts[np.isfinite(counts)].max(initial=0))
 
 
-def tracking_error(signals: pa.Table, joint: str, rows: npt.NDArray[np.bool_]) -> float | None:
+def tracking_error(signals: pa.Table, joint: str, rows: Mask) -> float | None:
     """Root mean square difference between a joint's desired and actual angle [rad]."""
     if not rows.any():
         return None
@@ -165,7 +164,7 @@ def _slope(time: Array, x: Array) -> float | None:
     return float((x[-1] - x[0]) / (time[-1] - time[0])) if time.size > 1 else None
 
 
-def _rms_norm(signals: pa.Table, prefix: str, unit: str, rows: npt.NDArray[np.bool_]) -> float | None:
+def _rms_norm(signals: pa.Table, prefix: str, unit: str, rows: Mask) -> float | None:
     if not rows.any():
         return None
     vectors = matrix(signals, [f"{prefix}{axis}_{unit}" for axis in "xyz"])[rows]

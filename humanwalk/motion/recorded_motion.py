@@ -122,7 +122,7 @@ class RecordedMotion:
         R_WA = RotationMatrix.MakeYRotation(pitch)
         R_WB = R_WA @ RotationMatrix.MakeXRotation(roll)
         x, y, z = np.eye(3)
-        w_WP = pitch_rate * y + roll_rate * (R_WA @ x) + yaw_rate * (R_WB @ z)
+        w_WP = pitch_rate * y + roll_rate * (R_WA.matrix() @ x) + yaw_rate * (R_WB.matrix() @ z)
         return PelvisMotion(X_WP, SpatialVelocity(w_WP, rate[-3:]))
 
 
