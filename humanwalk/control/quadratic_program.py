@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from functools import cache
 from typing import NamedTuple
 
 import daqp
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dtrtri
 
 from humanwalk.numerics import Array
 
@@ -33,27 +30,17 @@ class QuadraticProgram(NamedTuple):
 
     def solution(self) -> tuple[Array, Array] | None:
         """The solution a and f, or None if the solver finds none; the same program has the same solution bit by bit."""
-        # DAQP would invert H in plain loops, which takes longer than the rest of the solution. With H = U'U and y = U a
-        # the cost is y'y/2 plus linear terms; the bounds of a become rows, those of f remain bounds of variables.
-        U, undefined = dpotrf(self.H.T, clean=1)
-        if undefined:
-            return None
-        to_a, _ = dtrtri(U, overwrite_c=1)
-        (rows, m), k = self.A.shape, self.B.shape[1]
-        constraints, cost = np.zeros((m + rows, k + m)), np.zeros(k + m)
-        constraints[:m, k:] = to_a
-        constraints[m:, :k] = self.B
-        np.matmul(self.A, to_a, out=constraints[m:, k:])
-        np.matmul(self.g, to_a, out=cost[k:])
         # DAQP ignores constraints that are NaN.
-        if not math.isfinite(np.vdot(constraints, constraints) + cost @ cost + self.lower @ self.upper):
+        if not all(np.isfinite(part).all() for part in self):
             return None
-        kind = np.multiply(self.lower == self.upper, EQUALITY, dtype=np.int32)
-        identity = _identity(k + m)
-        x, _, flag, _ = daqp.solve(identity, cost, constraints, self.upper, self.lower, kind, iter_limit=MAX_ITERATIONS)
-        return (to_a @ x[k:], x[:k]) if flag > 0 else None
-
-
-@cache
-def _identity(size: int) -> Array:
-    return np.eye(size)
+        # DAQP inverts its Hessian in plain loops, which takes longer than the rest of the solution. In y, where a = T y
+        # and T' H T = 1, it is the identity; the bounds of a become rows, those of f remain bounds of variables.
+        T = np.linalg.inv(np.linalg.cholesky(self.H)).T
+        m, k = self.H.shape[0], self.B.shape[1]
+        cost = np.concatenate((np.zeros(k), self.g @ T))
+        constraints = np.block([[np.zeros((m, k)), T], [self.B, self.A @ T]])
+        sense = np.where(self.lower == self.upper, EQUALITY, 0).astype(np.int32)
+        x, _, flag, _ = daqp.solve(
+            np.eye(k + m), cost, constraints, self.upper, self.lower, sense, iter_limit=MAX_ITERATIONS
+        )
+        return (T @ x[k:], x[:k]) if flag > 0 else None
