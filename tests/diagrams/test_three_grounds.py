@@ -7,11 +7,12 @@ from scipy.optimize import brentq
 from humanwalk.body import SIDES, contact_spheres, sole_patches
 from humanwalk.contact.asperity import AsperityParameters, normal_force
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 
 MODELS = ("point", "hydroelastic", "asperity")
-WEIGHT = 70.0 * 9.81
+WEIGHT = 70.0 * GRAVITY
 STRIDE = 0.5 / (0.6 * 1.4)
 """Of the thesis' walk: L / (beta v), E26 [s]."""
 
@@ -21,7 +22,8 @@ def walks():
     """By model, the last stride of the thesis' walk, at 200 Hz."""
     last = {}
     for model in MODELS:
-        outcome = simulate(load_scenario("thesis", {"contact": model, "duration": "1.6"}))
+        changes = {"contact": model, "duration": "1.6", "simulation.time_step": "0.001"}
+        outcome = simulate(load_scenario("thesis", changes))
         assert outcome.survived
         time = outcome.signals["time_s"].to_numpy()
         last[model] = outcome.signals.filter(time > time[-1] - STRIDE)
