@@ -1,17 +1,18 @@
 """What a benchmark found, as numbers and as a file."""
 
 import json
-import math
 import os
 import platform
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from humanwalk.files import write_text
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.provenance import versions
+from humanwalk.run.schema import read_json
+
+MAX_RESULT_BYTES = 1_000_000
 
 KIND = "humanwalk bench 1"
 """What the files call themselves; the number changes with what is in them."""
@@ -87,6 +88,13 @@ class BenchResult:
         return f"{sum(self.done.values())} of {self.repeats * len(self.done)} repeats"
 
 
+@dataclass(frozen=True)
+class BenchFile(BenchResult):
+    """The content of a file."""
+
+    kind: str
+
+
 def machine() -> dict[str, Any]:
     """Processor, number of cores, their load by others and us over the last minute, and versions."""
     return {"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg()[0]} | versions()
@@ -112,25 +120,14 @@ def read_result(path: Path) -> BenchResult:
     Raises:
         ParameterError: it cannot be read, or is something else.
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if not isinstance(data, dict) or data.pop("kind", None) != KIND:
-            raise ValueError
-        # Before results were written as they came, there were whole ones only.
-        data.setdefault("done", dict.fromkeys(data["scenarios"], data["repeats"]))
-        data["scenarios"] = {name: _scenario_cost(cost) for name, cost in data["scenarios"].items()}
-        return BenchResult(**data)
-    except OSError as error:
-        raise ParameterError(f"{path}: {error.strerror}; allowed: a file of `humanwalk bench -o`") from None
-    except (ValueError, TypeError, KeyError, AttributeError):
+    data = read_json(path, MAX_RESULT_BYTES, BenchFile)
+    if data.pop("kind") != KIND:
         raise ParameterError(
-            f"{path}: is no result of this version's benchmark; allowed: a file of `humanwalk bench -o`; measure again"
-        ) from None
-
-
-def _scenario_cost(data: Mapping[str, Any]) -> ScenarioCost:
-    cost = ScenarioCost(**data)
-    numbers = [getattr(cost, field.name) for field in fields(cost) if field.name != "by_system"]
-    if not all(math.isfinite(number) for number in (*numbers, *cost.by_system.values())):
-        raise ValueError
-    return cost
+            f"{printable(path)}: not a result of this version's benchmark; allowed: a file of `humanwalk bench -o`; "
+            "measure again"
+        )
+    costs = {name: ScenarioCost(**cost) for name, cost in data["scenarios"].items()}
+    for name, cost in costs.items():
+        if min(cost.wall, cost.cpu, cost.plant) <= 0.0:
+            raise ParameterError(f"{printable(path)}: {name} takes no time; allowed: times above 0; measure again")
+    return BenchResult(**data | {"scenarios": costs})

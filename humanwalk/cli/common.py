@@ -52,7 +52,7 @@ class MessageConsole(SafeConsole):
 
     @file.setter
     def file(self, new_file: IO[str]) -> None:
-        super(MessageConsole, type(self)).file.__set__(self, new_file)
+        super(MessageConsole, type(self)).file.__set__(self, new_file)  # type: ignore[attr-defined]
 
 
 def _safe(text: str) -> str:

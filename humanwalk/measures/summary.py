@@ -13,6 +13,7 @@ from humanwalk.measures.events import events_of
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
+from humanwalk.quantity import printable
 from humanwalk.scenario import Scenario
 
 
@@ -74,8 +75,8 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     physics = controller.physics
     supported = "support.force_x_N" in signals.column_names
     summary: Summary = {
-        "scenario": name,
-        "description": scenario.description,
+        "scenario": printable(name),
+        "description": printable(scenario.description, 1000),
         "survived": end == "completed",
         "end": end,
         "physics": physics,

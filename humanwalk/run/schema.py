@@ -1,14 +1,47 @@
-"""Checks JSON data of others against a type: TypedDict, dict, list of choices by `|`, and scalars."""
+"""JSON files of others: read within bounds, and checked against a type before anything is used."""
 
+import dataclasses
+import json
 import math
 import types
+from pathlib import Path
 from typing import Any, get_args, get_origin, get_type_hints, is_typeddict
 
+from humanwalk.files import read_text
 from humanwalk.quantity import ParameterError, printable
 
-NAMES: dict[Any, str] = {str: "text", bool: "true or false", int: "a whole number", float: "a finite number"}
+SCALARS: dict[Any, str] = {
+    str: "one line of text",
+    bool: "true or false",
+    int: "a whole number",
+    float: "a finite number",
+    Any: "text, true, false or a number",
+}
+
 MAX_TEXT = 1000
 """Longest text [characters]."""
+
+
+def read_json(path: Path, limit: int, kind: Any) -> Any:
+    """Read a JSON file of a type; see `conform`.
+
+    Args:
+        path: the file.
+        limit: its largest size [bytes].
+        kind: type of the data.
+
+    Raises:
+        ParameterError: it cannot be read, is not JSON, or of another type.
+    """
+    text = read_text(path, limit)
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        raise ParameterError(
+            f"{printable(path)}: not JSON; allowed: the file as humanwalk wrote it; restore it"
+        ) from None
+    conform(data, kind, printable(path))
+    return data
 
 
 def conform(value: Any, kind: Any, name: str) -> None:
@@ -16,26 +49,32 @@ def conform(value: Any, kind: Any, name: str) -> None:
 
     Args:
         value: as `json.loads` returns it.
-        kind: a TypedDict, all of its keys required; dict[str, X]; X | None; str, bool, int or float.
+        kind: a TypedDict or dataclass, all of its keys required; dict[str, X]; X | None; str, bool, int, float; or Any
+            of these four.
         name: of the value, for the message.
     """
-    if is_typeddict(kind):
+    if is_typeddict(kind) or dataclasses.is_dataclass(kind):
         hints = get_type_hints(kind)
         _require(isinstance(value, dict), name, "a group of fields")
         for key in sorted(hints.keys() ^ value.keys()):
-            raise ParameterError(f"{name}.{printable(key)}: {'missing' if key in hints else 'no such field'}")
+            raise ParameterError(
+                f"{name}: {printable(key)} is {'missing' if key in hints else 'no field of it'}; allowed: the file as "
+                "humanwalk wrote it; restore it"
+            )
         for key, item in hints.items():
-            conform(value[key], item, f"{name}.{key}")
+            conform(value[key], item, f"{name}: {key}")
     elif get_origin(kind) is dict:
         _require(isinstance(value, dict), name, "a group of fields")
         for key, item in value.items():
-            conform(item, get_args(kind)[1], f"{name}.{printable(key)}")
+            _require(_is_scalar(key, str), f"{name}: {printable(key)}", SCALARS[str])
+            conform(item, get_args(kind)[1], f"{name}.{key}")
     elif get_origin(kind) is types.UnionType:
         if value is not None:
             (kind,) = (option for option in get_args(kind) if option is not type(None))
             conform(value, kind, name)
     else:
-        _require(_is_scalar(value, kind), name, NAMES[kind])
+        kinds = (str, bool, int, float) if kind is Any else (kind,)
+        _require(any(_is_scalar(value, each) for each in kinds), name, SCALARS[kind])
 
 
 def _is_scalar(value: Any, kind: type) -> bool:
@@ -44,10 +83,10 @@ def _is_scalar(value: Any, kind: type) -> bool:
     if isinstance(value, int):
         return kind in (int, float) and value.bit_length() <= 64
     if isinstance(value, str):
-        return kind is str and len(value) <= MAX_TEXT
+        return kind is str and len(value) <= MAX_TEXT and value.isprintable()
     return kind is float and isinstance(value, float) and math.isfinite(value)
 
 
 def _require(fits: bool, name: str, allowed: str) -> None:
     if not fits:
-        raise ParameterError(f"{name}: of another type; allowed: {allowed}")
+        raise ParameterError(f"{name} is of another type; allowed: {allowed}; restore the file as humanwalk wrote it")

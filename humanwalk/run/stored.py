@@ -1,6 +1,5 @@
 """Reads signals and summary of a run folder that somebody else may have made: checked, and within bounded memory."""
 
-import json
 import re
 from pathlib import Path
 
@@ -10,12 +9,12 @@ import pyarrow.parquet as pq
 
 from humanwalk.body import SIDES
 from humanwalk.body.anatomy import human
-from humanwalk.files import read_regular, read_text
+from humanwalk.files import read_regular
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import Summary
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.provenance import Provenance, signals_hash
-from humanwalk.run.schema import conform
+from humanwalk.run.schema import read_json
 from humanwalk.scenario import Scenario
 
 MAX_ROWS = 400_000
@@ -56,18 +55,16 @@ def read_summary(path: Path) -> RunSummary:
     Raises:
         ParameterError: it is no summary, or a number in it is not finite.
     """
-    try:
-        data = json.loads(read_text(path, MAX_SUMMARY_BYTES))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise _refusal(path, "not JSON") from None
-    conform(data, RunSummary, printable(path))
+    summary: RunSummary = read_json(path, MAX_SUMMARY_BYTES, RunSummary)
     joints = {joint.name for joint in human().joints}
-    for name in ("peak_torque_N_m", "saturated_share", "tracking_error_rad"):
-        if data[name].keys() not in (set(), joints):
-            raise _refusal(path, f"{name} does not name the joints of the body")
-    summary: RunSummary = data
+    by_joint = {
+        "peak_torque_N_m": summary["peak_torque_N_m"],
+        "saturated_share": summary["saturated_share"],
+        "tracking_error_rad": summary["tracking_error_rad"],
+    }
+    for name, values in by_joint.items():
+        if values.keys() not in (set(), joints):
+            raise _refusal(path, f"{name} does not have the joints of the body")
     return summary
 
 

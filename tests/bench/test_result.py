@@ -71,15 +71,6 @@ def test_a_file_holds_the_whole_result(tmp_path):
     assert read_result(tmp_path / "bench.json") == RESULT
 
 
-def test_a_file_of_before_results_came_in_parts_holds_a_whole_one(tmp_path):
-    file = tmp_path / "bench.json"
-    write_result(file, RESULT)
-    data = json.loads(file.read_text())
-    del data["done"]
-    file.write_text(json.dumps(data))
-    assert read_result(file) == RESULT
-
-
 def test_what_is_not_complete_says_so(tmp_path):
     assert RESULT.complete
     assert not PART.complete
@@ -103,17 +94,26 @@ def test_what_is_not_complete_says_so(tmp_path):
 def test_files_of_other_kinds_are_refused(tmp_path, text):
     file = tmp_path / "other.json"
     file.write_text(text)
-    with pytest.raises(ParameterError, match=r"other\.json: is no result"):
+    with pytest.raises(ParameterError, match=r"other\.json.*restore"):
         read_result(file)
 
 
-def test_a_number_that_is_none_is_refused(tmp_path):
+def test_a_file_of_another_version_is_refused(tmp_path):
+    file = tmp_path / "bench.json"
+    write_result(file, RESULT)
+    file.write_text(file.read_text().replace("humanwalk bench 1", "humanwalk bench 0"))
+    with pytest.raises(ParameterError, match="not a result of this version"):
+        read_result(file)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 0.0, -1.0, "1", True, None, 10**400, []], ids=repr)
+def test_a_time_that_is_not_positive_and_finite_is_refused(tmp_path, value):
     file = tmp_path / "bench.json"
     write_result(file, RESULT)
     data = json.loads(file.read_text())
-    data["scenarios"]["thesis"]["cpu"] = float("nan")
+    data["scenarios"]["thesis"]["cpu"] = value
     file.write_text(json.dumps(data))
-    with pytest.raises(ParameterError, match="is no result"):
+    with pytest.raises(ParameterError, match=r"thesis|not JSON"):
         read_result(file)
 
 
