@@ -34,6 +34,21 @@ RESTART_GAIN = 0.5
 """Fraction of the first residual below which the pose of the second start is taken: a smaller improvement does not
 justify a jump of the joints."""
 
+ROW_WEIGHTS = np.array((0.03, 0.03, 0.03, 1.0, 1.0, 1.0))
+"""Weights of the residual [rotation [m/rad]; position]: length equivalent to one radian of orientation error if a
+target is out of reach (our choice). It is less than the height of the ankle, so that the sole keeps its position and
+gives way in pitch."""
+
+DAMPING = 0.5
+"""Damping of a step per weighted residual [1/rad] (after Sugihara 2011): short steps far from the target and near
+singular postures, pure Newton steps near the target."""
+
+SINGULAR_VALUE_FLOOR = 0.01
+"""Singular value of the weighted J [m/rad] below which joint velocities do not grow further (our choice)."""
+
+MAX_STEP = 0.5
+"""Maximum change of any joint in one step [rad] (our choice); keeps the linearization valid."""
+
 DIFFERENCE_STEP = 1e-6
 """Half width of the central differences of the numeric Jacobian [rad]."""
 
@@ -51,28 +66,9 @@ class InverseKinematicsParameters:
     max_iterations: int = quantity(50, "", 1, 1000)
     """Maximum number of Newton steps."""
 
-    orientation_weight: float = quantity(0.03, "m/rad", 1e-3, 10.0)
-    """Length equivalent to one radian of orientation error if a target is out of reach. It is less than the height of
-    the ankle, so that the sole keeps its position and gives way in pitch."""
-
-    damping: float = quantity(0.5, "1/rad", 0.0, 10.0)
-    """Damping of a step per weighted residual (after Sugihara 2011): short steps far from the target and near singular
-    postures, pure Newton steps near the target."""
-
-    singular_value_floor: float = quantity(0.01, "m/rad", 0.0, 1.0)
-    """Singular value of the weighted J below which joint velocities do not grow further."""
-
     neutral_pull: float = quantity(0.1, "", 0.0, 1.0)
     """Fraction of each angle that the first step takes back in the null space of J: seven joints for six rows have one
     redundant motion, which would drift from cycle to cycle."""
-
-    max_step: float = quantity(0.5, "rad", 1e-3, 3.2)
-    """Maximum change of any joint in one step; keeps the linearization valid."""
-
-    @property
-    def row_weights(self) -> Array:
-        """Weights of the six rows of the residual [rotation; position]."""
-        return np.repeat((self.orientation_weight, 1.0), 3)
 
 
 class InverseKinematicsSolution(NamedTuple):
@@ -189,21 +185,20 @@ def _iterate(
     leg: LegKinematics, X_PS_desired: RigidTransform, theta_guess: Array, parameters: InverseKinematicsParameters
 ) -> tuple[InverseKinematicsSolution, float]:
     """Newton steps until none reduces the residual; the solution and the norm of its weighted residual."""
-    weights = parameters.row_weights
 
     def residual(theta: Array) -> tuple[Array, float]:
         """The residual G and its weighted norm."""
         G = pose_error(leg.X_PS(theta), X_PS_desired)
-        return G, float(np.linalg.norm(weights * G))
+        return G, float(np.linalg.norm(ROW_WEIGHTS * G))
 
     theta = np.clip(theta_guess, leg.lower, leg.upper)
     G, cost = residual(theta)
     iterations, pull = 0, parameters.neutral_pull
     while np.linalg.norm(G) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
-        J = weights[:, None] * leg.jacobian(theta, parameters.jacobian)
-        step = _newton_step(leg, theta, J, weights * G, parameters.damping * cost, pull)
-        step *= min(1.0, parameters.max_step / max(np.abs(step).max(), parameters.max_step))
+        J = ROW_WEIGHTS[:, None] * leg.jacobian(theta, parameters.jacobian)
+        step = _newton_step(leg, theta, J, ROW_WEIGHTS * G, DAMPING * cost, pull)
+        step *= MAX_STEP / max(np.abs(step).max(), MAX_STEP)
         # Far from the target and at the ends of the joint ranges a full step can increase the residual.
         for fraction in STEP_FRACTIONS:
             trial = np.clip(theta + fraction * step, leg.lower, leg.upper)
@@ -247,16 +242,15 @@ def joint_velocity(
         leg: the kinematic chain.
         theta: joint angles [rad]; joints at the end of their range do not move outward.
         V_PS_desired: [angular; translational] velocity of S in P, expressed in P, shape (6,) [rad/s, m/s].
-        parameters: weights, and the floor that keeps the velocity finite near singular postures.
+        parameters: kind of the Jacobian.
     """
     parameters = parameters or InverseKinematicsParameters()
-    J = parameters.row_weights[:, None] * leg.jacobian(theta, parameters.jacobian)
-    V = parameters.row_weights * V_PS_desired
-    floor = max(parameters.singular_value_floor, RANK_FLOOR)
+    J = ROW_WEIGHTS[:, None] * leg.jacobian(theta, parameters.jacobian)
+    V = ROW_WEIGHTS * V_PS_desired
 
     def velocity_of(free: Mask) -> Array:
         U, s, Vt = np.linalg.svd(J[:, free], full_matrices=False)
-        velocity: Array = Vt.T @ (s / np.maximum(s, floor) ** 2 * (U.T @ V))
+        velocity: Array = Vt.T @ (s / np.maximum(s, SINGULAR_VALUE_FLOOR) ** 2 * (U.T @ V))
         return velocity
 
     return _within_ranges(leg, theta, velocity_of)

@@ -9,7 +9,12 @@ from pydrake.systems.primitives import LogVectorOutput
 
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
-from humanwalk.control.inverse_kinematics import InverseKinematicsParameters, pose_error
+from humanwalk.control.inverse_kinematics import (
+    ROW_WEIGHTS,
+    SINGULAR_VALUE_FLOOR,
+    InverseKinematicsParameters,
+    pose_error,
+)
 from humanwalk.systems import inverse_kinematics_solver as module
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
@@ -223,7 +228,7 @@ def test_angles_of_the_walk_stay_in_their_ranges(walked, joints):
 
 
 def smallest_singular_value(leg, theta):
-    return np.linalg.svd(InverseKinematicsParameters().row_weights[:, None] * leg.jacobian(theta))[1][-1]
+    return np.linalg.svd(ROW_WEIGHTS[:, None] * leg.jacobian(theta))[1][-1]
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -237,8 +242,7 @@ def test_rates_of_the_walk_are_the_differences_of_its_angles(walked, legs, place
     # where an acceleration jumps, at lift-off and touchdown.
     third = np.abs(np.diff(q, n=3, axis=0)).max(axis=1) / h**3
     bound = np.array([h**2 / 2 * third[max(k - 3, 0) : k + 3].max() + 1e-3 for k in range(len(quotient))])
-    floor = InverseKinematicsParameters().singular_value_floor
-    regular = np.array([smallest_singular_value(legs[side], theta) > floor for theta in q])
+    regular = np.array([smallest_singular_value(legs[side], theta) > SINGULAR_VALUE_FLOOR for theta in q])
     regular = regular[:-2] & regular[1:-1] & regular[2:]
     assert np.all(error[regular] <= bound[regular])
     # Neither condition lets much pass: nearly the whole walk is looked at, within a hundredth of the fastest rate.
