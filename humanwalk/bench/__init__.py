@@ -1,4 +1,4 @@
-"""What simulating costs: time by its parts, memory and start-up, as medians over interleaved repeats."""
+"""Cost of a simulation: time of its parts, memory and start-up, as medians over interleaved repeats."""
 
 from humanwalk.bench.measure import bench
 from humanwalk.bench.result import BenchResult, ScenarioCost, read_result, write_result

@@ -1,4 +1,4 @@
-"""The plant of a walk without anything of ours around it, walking the same walk: the yardstick of what we add."""
+"""The plant alone in the motion of a recorded walk: the reference for the cost of all other systems."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -19,13 +19,13 @@ from humanwalk.scenario import Scenario
 
 @dataclass
 class PlantRecord:
-    """What a plant was fed with in every step of a walk.
+    """Inputs of a plant in every step of a walk.
 
     Attributes:
-        time: beginning of every step [s].
-        inputs: value of every connected input port at these times, by the port's name: arrays, or lists of
+        time: Start of every step [s].
+        inputs: Values of every connected input port at these times, by the port's name: arrays, or lists of
             ExternallyAppliedSpatialForce.
-        start, end: plant state [q; v] at the first and at the last time.
+        start, end: Plant state [q; v] at the first and at the last time.
     """
 
     time: list[float] = field(default_factory=list)
@@ -35,10 +35,10 @@ class PlantRecord:
 
 
 def record_plant(prepared: Prepared) -> PlantRecord:
-    """Let a simulation that has not begun keep, by its monitor, what its plant is fed with.
+    """Have a simulation that has not begun record its plant's inputs, by its monitor.
 
     Raises:
-        ParameterError: its plant is not a discrete one, or it has none.
+        ParameterError: It has no discrete plant.
     """
     plant = prepared.plant
     if plant is None:
@@ -70,17 +70,17 @@ def record_plant(prepared: Prepared) -> PlantRecord:
 
 
 class BarePlant:
-    """The plant of a scenario that repeats a recorded walk, its inputs fixed anew for every step."""
+    """The plant of a scenario that repeats a recorded walk; its inputs are fixed for every step."""
 
     def __init__(self, scenario: Scenario, record: PlantRecord) -> None:
-        """Make the plant and put it where the record begins."""
+        """Build the plant, in the first recorded state."""
         builder = DiagramBuilder()
         self.plant = add_world(builder, scenario, visuals=False).plant
         self.simulator = Simulator(builder.Build())
         self._context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
         self._record = record
         self._step = 0
-        # What never has a value need not be fed.
+        # Ports that never have a value stay unconnected.
         inputs = {name: values for name, values in record.inputs.items() if any(len(value) for value in values)}
         self._feeds = [(self._fix(name), values) for name, values in inputs.items()]
         self._feed()
@@ -105,10 +105,10 @@ class BarePlant:
             feed(values[self._step])
 
     def advance(self, until: float) -> Cost:
-        """Go on to a simulated time [s]; returns the cost of the steps alone.
+        """Advance to a simulated time [s]; returns the cost of the steps alone.
 
         Raises:
-            ParameterError: at the end of the record it is not where the walk was.
+            ParameterError: The last state differs from the recorded one.
         """
         cost = Cost(0.0, 0.0)
         times = self._record.time
@@ -122,6 +122,6 @@ class BarePlant:
         ):
             raise ParameterError(
                 "bench: the bare plant does not repeat the walk bit by bit, so their costs cannot be compared; "
-                "allowed: scenarios whose plant is fed by its input ports alone"
+                "allowed: scenarios whose plant depends on its input ports alone"
             )
         return cost

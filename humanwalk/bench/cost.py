@@ -1,4 +1,4 @@
-"""Two clocks, and the turns that simulations take so that a busy machine disturbs all of them alike."""
+"""Wall-clock and processor time, and simulations by turns, so that a busy machine affects all of them equally."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 
 CHUNK = 0.1
-"""Simulated time of one turn [s]: short, so that what else the machine does hits every simulation; ratios of costs
-measured in turns repeat to 2 or 3 %, those measured one after the other to 20 %."""
+"""Simulated time of one turn [s]: short, so that other load affects every simulation; ratios of costs measured by
+turns repeat within 2 to 3 %, those measured one after the other within 20 %."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What something took.
+    """Time that a piece of work takes.
 
     Attributes:
-        wall: on the clock [s].
-        cpu: of this thread's processor time [s], which neighbours on a busy machine disturb less.
+        wall: Wall-clock time [s].
+        cpu: Processor time of this thread [s], which other processes affect less.
     """
 
     wall: float
@@ -37,13 +37,13 @@ def cost_of(work: Callable[[], object]) -> Cost:
 def in_turns(
     advance: Mapping[str, Callable[[float], Cost]], until: float, begin: float = 0.0, chunk: float = CHUNK
 ) -> dict[str, list[Cost]]:
-    """Let simulations advance by turns, the order reversed every time, and return the cost of every turn by name.
+    """Advance simulations by turns, in alternating order, and return the cost of every turn by name.
 
     Args:
-        advance: by name: goes on to a simulated time [s] and returns the cost.
-        until: simulated time at the end [s].
-        begin: simulated time at which they are [s].
-        chunk: simulated time of a turn [s].
+        advance: By name: advances to a simulated time [s] and returns the cost.
+        until: Final simulated time [s].
+        begin: Present simulated time [s].
+        chunk: Simulated time of a turn [s].
     """
     turns = max(1, round((until - begin) / chunk))
     costs: dict[str, list[Cost]] = {name: [] for name in advance}

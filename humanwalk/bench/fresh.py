@@ -1,4 +1,4 @@
-"""One repeat of one scenario, in a process started for it: only there start-up and peak memory are a user's."""
+"""One repeat of one scenario in a process of its own, where start-up and peak memory are those of a user."""
 
 import json
 import logging
@@ -19,19 +19,19 @@ from humanwalk.scenario import Scenario, load_scenario
 
 
 def measure_repeat(scenario: Scenario, began: float) -> dict[str, Any]:
-    """Simulate a scenario five times: as a user does, profiled, then by turns in full, without record, as bare plant.
+    """Simulate a scenario five times: as a user does, profiled, then by turns in full, unrecorded, as bare plant.
 
     Args:
-        scenario: a scenario with a discrete plant.
-        began: `time.perf_counter()` before anything of humanwalk was imported.
+        scenario: A scenario with a discrete plant.
+        began: `time.perf_counter()` before the import of humanwalk.
 
     Returns:
         startup_s: from then to the end of the first step; peak_memory_MB: of the first simulation;
-        profile: exclusive processor time of our systems by class [s]; turns: by simulation ("full", "unrecorded",
-        "bare") the wall and processor time of every turn [s]; the last of "full" makes the table of the record.
+        profile: exclusive processor time of our systems by class [s]; turns: wall and processor time of every turn
+        [s] by simulation ("full", "unrecorded", "bare"); the last of "full" makes the table of signals.
 
     Raises:
-        ParameterError: the scenario cannot be simulated to its end, or its plant cannot be told from the rest.
+        ParameterError: The scenario cannot be simulated to its end, or its plant cannot be simulated separately.
     """
     walk = TimedWalk(scenario)
     walk.advance(scenario.simulation.time_step)
@@ -41,7 +41,7 @@ def measure_repeat(scenario: Scenario, began: float) -> dict[str, Any]:
     if walk.ended:
         raise ParameterError(
             f"duration: {scenario.duration:g} is too long, the simulation ended at {walk.time:.2f} s: {walk.ended}; "
-            "allowed: a walk that lasts; shorten --duration"
+            "allowed: a walk without a fall; shorten --duration"
         )
     with profiled() as clock:
         prepared = prepare(scenario, record=False)
@@ -65,17 +65,17 @@ def measure_repeat(scenario: Scenario, began: float) -> dict[str, Any]:
 
 
 def peak_memory_MB() -> float:
-    """The most memory that this process had in use since it began [MB]."""
+    """Peak resident memory of this process [MB]."""
     status = Path("/proc/self/status")
     if status.exists():
-        # Linux's getrusage would count the memory of the process that started this one, too.
+        # On Linux, getrusage includes the memory of the parent process.
         (peak,) = (line for line in status.read_text(encoding="ascii").splitlines() if line.startswith("VmHWM:"))
         return int(peak.split()[1]) * 1024 / 1e6
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
 
 
 def main(began: float) -> None:
-    """Read scenario and overrides as JSON from the command line, print the measures or the refusal as JSON."""
+    """Read scenario and overrides as JSON from the command line, print the measures or the error as JSON."""
     logging.getLogger("drake").setLevel(logging.ERROR)
     name, overrides = json.loads(sys.argv[1])
     try:

@@ -31,17 +31,17 @@ def bench(
     on_progress: Callable[[str, int, int], None] = lambda name, done, all_: None,
     on_result: Callable[[BenchResult], None] = lambda result: None,
 ) -> BenchResult:
-    """Measure scenarios, each repeat in a process of its own on one core, repeats of all scenarios interleaved.
+    """Measure scenarios, each repeat in its own process on one core, repeats of all scenarios interleaved.
 
     Args:
-        scenarios: names of shipped ones, or paths.
-        overrides: see `load_scenario`; the duration, too.
-        repeats: how often each is measured.
-        on_progress: called before each repeat with the scenario, the repeats done and those of all scenarios.
-        on_result: called after each repeat with what was found so far.
+        scenarios: Names of shipped scenarios, or paths.
+        overrides: See `load_scenario`; includes the duration.
+        repeats: Number of repeats of each scenario.
+        on_progress: Called before each repeat with the scenario, the number of repeats done, and of all repeats.
+        on_result: Called after each repeat with the result so far.
 
     Raises:
-        ParameterError: a scenario cannot be simulated for so long, in one line.
+        ParameterError: A scenario cannot be simulated for this duration.
     """
     durations = {scenario: load_scenario(scenario, overrides).duration for scenario in scenarios}
     found: dict[str, list[dict[str, Any]]] = {scenario: [] for scenario in durations}
@@ -75,10 +75,10 @@ def _repeat(scenario: str, overrides: Mapping[str, str]) -> dict[str, Any]:
 
 
 def put_together(repeats: Sequence[Mapping[str, Any]], duration: float) -> ScenarioCost:
-    """One scenario's cost out of the measures of its repeats, see `measure_repeat`.
+    """Cost of one scenario from the measures of its repeats, see `measure_repeat`.
 
-    Every repeat does the same work turn by turn. So the median is taken of every turn over the repeats, and what
-    disturbed one turn of one repeat does not count; their sum is the cost of the walk.
+    Every repeat does the same work turn by turn. The cost is the sum over turns of the median over repeats, so that a
+    disturbance of one turn of one repeat does not count.
     """
 
     def of_turns(simulation: str, clock: int) -> float:

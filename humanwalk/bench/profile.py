@@ -1,4 +1,4 @@
-"""Which of our systems costs how much, by exclusive times."""
+"""Exclusive processor time of our systems."""
 
 import functools
 import inspect
@@ -11,15 +11,15 @@ from typing import Any
 from pydrake.systems.framework import Context, InputPort, LeafSystem
 
 UPSTREAM = "upstream"
-"""Name under which an `ExclusiveClock` has what systems pulled through their input ports and Python did not compute."""
+"""Name under which an `ExclusiveClock` counts Drake's computations that systems trigger through their input ports."""
 
 
 class ExclusiveClock:
-    """Adds up, by name, the time of functions without that of the functions that they call.
+    """Accumulates, by name, the time of functions without that of the functions that they call.
 
     Attributes:
-        seconds: exclusive time by name [s].
-        calls: number of calls by name.
+        seconds: Exclusive time by name [s].
+        calls: Number of calls by name.
     """
 
     def __init__(self, clock: Callable[[], float] = time.thread_time) -> None:
@@ -30,7 +30,7 @@ class ExclusiveClock:
         self._inner: list[float] = []
 
     def run[T](self, name: str, function: Callable[..., T], *arguments: Any) -> T:
-        """Call the function and return what it returns, its time on account of `name`."""
+        """Call the function and return its result; its time counts for `name`."""
         begun = self._clock()
         self._inner.append(0.0)
         try:
@@ -45,15 +45,14 @@ class ExclusiveClock:
 
 @contextmanager
 def profiled(seconds: Callable[[], float] = time.thread_time) -> Iterator[ExclusiveClock]:
-    """Within the block, LeafSystems of Python that are made and simulated are timed, by the name of their class.
+    """Within the block, Python LeafSystems that are made and simulated are timed, by the name of their class.
 
-    Systems pull: a calculation that reads an input port lets Drake compute what is upstream, like the plant's
-    solution of the contact, which the plant's own step shares later. So every port is read twice: the first time
-    counts as `UPSTREAM` (without the systems of Python in it, which count on their own), the second, from Drake's
-    cache, is what reading costs the system.
+    Drake computes on demand: reading an input port triggers everything upstream, such as the plant's contact
+    solution, which the plant's own step uses again later. Every port is therefore read twice: the first time counts as
+    `UPSTREAM` (Python systems in it count separately); the second, from Drake's cache, is the system's cost of reading.
 
     Args:
-        seconds: the clock.
+        seconds: The clock.
     """
     clock = ExclusiveClock(seconds)
     eval_port = InputPort.Eval

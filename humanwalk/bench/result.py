@@ -1,4 +1,4 @@
-"""What a benchmark found, as numbers and as a file."""
+"""The result of a benchmark, and its file."""
 
 import json
 import os
@@ -13,28 +13,29 @@ from humanwalk.run.provenance import versions
 from humanwalk.run.schema import read_json
 
 MAX_RESULT_BYTES = 1_000_000
+"""Largest file that is read; a result of all shipped scenarios has 20 kB."""
 
 KIND = "humanwalk bench 1"
-"""What the files call themselves; the number changes with what is in them."""
+"""Kind and version of the file."""
 
 
 @dataclass(frozen=True)
 class ScenarioCost:
-    """What one scenario costs; times are seconds for a simulated second.
+    """Cost of one scenario; times are seconds per simulated second.
 
     plant + solvers + systems + logging = cpu.
 
     Attributes:
-        wall: on the clock, as a user simulates it, without replay and plots.
-        cpu: the same as processor time.
-        plant: the bare plant, walking the same walk bit by bit.
-        solvers: inverse kinematics, or the whole-body program.
-        systems: everything else of ours, and Drake's way into Python and back.
-        logging: what recording adds: the sinks, and the observers that nothing else asks.
-        by_system: processor time of our systems by class, without that of what they pull.
-        startup_s: from the first import to the end of the first step.
-        peak_memory_MB: of a run of `duration_s`.
-        duration_s: simulated time.
+        wall: Wall-clock time of a simulation without replay and plots.
+        cpu: Its processor time.
+        plant: The bare plant in the same motion, bit by bit.
+        solvers: Inverse kinematics, or the whole-body program.
+        systems: All our other systems, and Drake's calls into Python.
+        logging: Added by recording: the sinks, and observers without other consumers.
+        by_system: Exclusive processor time of our systems by class.
+        startup_s: From the first import to the end of the first step.
+        peak_memory_MB: Of a run of `duration_s`.
+        duration_s: Simulated time.
     """
 
     wall: float
@@ -50,25 +51,25 @@ class ScenarioCost:
 
     @property
     def realtime_factor(self) -> float:
-        """Simulated seconds per second on the clock."""
+        """Simulated seconds per wall-clock second."""
         return 1.0 / self.wall
 
     @property
     def above_plant(self) -> float:
-        """Everything above the bare plant, as a share of the bare plant."""
+        """Cost of everything except the bare plant, as a fraction of the bare plant."""
         return self.cpu / self.plant - 1.0
 
 
 @dataclass(frozen=True)
 class BenchResult:
-    """Costs by scenario, and what they were measured on.
+    """Costs by scenario, and the machine.
 
     Attributes:
-        scenarios: of those that were measured at least once.
-        repeats: how often each was to be measured.
-        done: how often each that was asked for was measured.
-        overrides: of all of them, see `load_scenario`.
-        machine: see `machine`.
+        scenarios: Costs of the scenarios that were measured at least once.
+        repeats: Requested number of repeats of each scenario.
+        done: Completed repeats of each requested scenario.
+        overrides: Overrides of all scenarios, see `load_scenario`.
+        machine: See `machine`.
     """
 
     scenarios: dict[str, ScenarioCost]
@@ -79,12 +80,12 @@ class BenchResult:
 
     @property
     def complete(self) -> bool:
-        """Whether everything that was asked for was measured as often as it was to be."""
+        """Whether all requested repeats are done."""
         return all(done == self.repeats for done in self.done.values())
 
     @property
     def progress(self) -> str:
-        """How much of it is there: "5 of 24 repeats"."""
+        """Progress as text: "5 of 24 repeats"."""
         return f"{sum(self.done.values())} of {self.repeats * len(self.done)} repeats"
 
 
@@ -96,7 +97,7 @@ class BenchFile(BenchResult):
 
 
 def machine() -> dict[str, Any]:
-    """Processor, number of cores, their load by others and us over the last minute, and versions."""
+    """Processor, number of cores, their load over the last minute, and versions."""
     return {"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg()[0]} | versions()
 
 
@@ -115,10 +116,10 @@ def write_result(path: Path, result: BenchResult) -> None:
 
 
 def read_result(path: Path) -> BenchResult:
-    """Read a result that `write_result` wrote.
+    """Read a result of `write_result`.
 
     Raises:
-        ParameterError: it cannot be read, or is something else.
+        ParameterError: It cannot be read, or is not a result of this version.
     """
     data = read_json(path, MAX_RESULT_BYTES, BenchFile)
     if data.pop("kind") != KIND:

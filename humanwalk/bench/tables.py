@@ -1,4 +1,4 @@
-"""A benchmark's result for people."""
+"""Tables of benchmark results."""
 
 from collections.abc import Callable, Mapping
 
@@ -22,8 +22,8 @@ COLUMNS: tuple[Column, ...] = (
     ("start s", lambda cost: cost.startup_s, ".2f"),
     ("MB", lambda cost: cost.peak_memory_MB, ".0f"),
 )
-"""Heading, value, format; times are milliseconds for a simulated second. `above` is everything above the plant, as a
-share of it; `x real` the real-time factor."""
+"""Heading, value, format; times are milliseconds per simulated second. `above` is the cost of everything except the
+plant, in percent of it; `x real` is the real-time factor."""
 
 
 def cost_table(result: BenchResult) -> Table:
@@ -31,7 +31,7 @@ def cost_table(result: BenchResult) -> Table:
     of = result.machine
     part = "" if result.complete else f", not complete: {result.progress}"
     table = _table(
-        f"ms for a simulated second, median of {result.repeats}{part}; {of['processor']}, load {of['load']:.1f}"
+        f"ms per simulated second, median of {result.repeats}{part}; {of['processor']}, load {of['load']:.1f}"
     )
     for name, cost in result.scenarios.items():
         table.add_row(name, *(format(value(cost), form) for _, value, form in COLUMNS))
@@ -39,24 +39,24 @@ def cost_table(result: BenchResult) -> Table:
 
 
 def system_table(result: BenchResult) -> Table:
-    """Time of our systems by scenario, the dearest first."""
-    table = Table("scenario", "of our systems alone, ms for a simulated second", box=box.SIMPLE_HEAD)
+    """Time of our systems by scenario, most expensive first."""
+    table = Table("scenario", "our systems, ms per simulated second", box=box.SIMPLE_HEAD)
     for name, cost in result.scenarios.items():
         table.add_row(name, ", ".join(f"{system} {1e3 * seconds:.1f}" for system, seconds in cost.by_system.items()))
     return table
 
 
 def ratios(old: BenchResult, new: BenchResult) -> dict[str, dict[str, float | None]]:
-    """New over old by scenario and column; None where the old one is not above zero.
+    """Ratio new / old by scenario and column; None where the old value is not positive.
 
     Raises:
-        ParameterError: no scenario is in both.
+        ParameterError: No scenario is in both.
     """
     both = [name for name in old.scenarios if name in new.scenarios]
     if not both:
         raise ParameterError(
             f"--compare: no scenario is in both, {', '.join(old.scenarios)} and {', '.join(new.scenarios)}; "
-            "allowed: results with a scenario in common; measure the same"
+            "allowed: results with a common scenario; measure the same"
         )
 
     def ratio(name: str, value: Callable[[ScenarioCost], float]) -> float | None:
@@ -67,10 +67,10 @@ def ratios(old: BenchResult, new: BenchResult) -> dict[str, dict[str, float | No
 
 
 def comparison_table(old: BenchResult, new: BenchResult) -> Table:
-    """Ratios new/old by scenario; says where the two were not measured alike."""
+    """Ratios new / old by scenario; the title names differing conditions."""
     differs = _differences(old, new)
     differs += [f"{which} has {one.progress}" for which, one in (("old", old), ("new", new)) if not one.complete]
-    table = _table("new / old" + (f"; not measured alike: {', '.join(differs)}" if differs else ""))
+    table = _table("new / old" + (f"; different conditions: {', '.join(differs)}" if differs else ""))
     for name, row in ratios(old, new).items():
         table.add_row(name, *("-" if value is None else format(value, ".2f") for value in row.values()))
     return table

@@ -1,4 +1,4 @@
-"""A simulation as `simulate` does it, that goes on when it is told to and says what that took."""
+"""A simulation as by `simulate`, advanced in parts that are timed."""
 
 from humanwalk.bench.cost import Cost, cost_of
 from humanwalk.run.monitor import Monitor
@@ -7,21 +7,21 @@ from humanwalk.scenario import Scenario
 
 
 class TimedWalk:
-    """A scenario's simulation, initialised, with the monitor that ends it at a fall.
+    """An initialized simulation of a scenario, with the monitor that ends it at a fall.
 
     Attributes:
-        prepared: simulator, plant and recorder.
+        prepared: Simulator, plant and recorder.
     """
 
     def __init__(self, scenario: Scenario, record: bool = True) -> None:
-        """Make and initialise it, with or without recording."""
+        """Build and initialize it, with or without recording."""
         self.prepared: Prepared = prepare(scenario, record=record)
         self._monitor = Monitor(self.prepared.watched, scenario.terrain)
         self.prepared.simulator.Initialize()
 
     @property
     def ended(self) -> str:
-        """Why the simulation ended, see Monitor; empty while it goes on."""
+        """Why the simulation ended, see Monitor; empty while it continues."""
         return self._monitor.reason
 
     @property
@@ -30,11 +30,11 @@ class TimedWalk:
         return float(self.prepared.simulator.get_context().get_time())
 
     def make_table(self) -> Cost:
-        """Make the table of what was recorded; returns the cost."""
+        """Make the table of the recorded signals; returns the cost."""
         recorder = self.prepared.recorder
         assert recorder is not None
         return cost_of(lambda: recorder.table(self.prepared.simulator.get_context()))
 
     def advance(self, until: float) -> Cost:
-        """Go on to a simulated time [s], unless it has ended; returns the cost."""
+        """Advance to a simulated time [s], unless it has ended; returns the cost."""
         return cost_of(lambda: self._monitor.advance(self.prepared.simulator, until))

@@ -1,4 +1,4 @@
-"""A run for other programs: OpenSim, motion-capture software (C3D), MATLAB, spreadsheets."""
+"""Export of a run to other programs: OpenSim, motion-capture software (C3D), MATLAB, spreadsheets."""
 
 from humanwalk.exchange.export import FORMATS, export_run
 

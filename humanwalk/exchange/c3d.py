@@ -1,6 +1,6 @@
-"""A run as a C3D file: markers as points, two force plates, in the laboratory's axes (x forward, y left, z up).
+"""A run as a C3D file: markers as points and two force plates, in W (x forward, y left, z up).
 
-Lengths are millimetres and numbers single precision, as in all C3D files.
+Lengths are in millimeters and numbers in single precision, as usual in C3D files.
 """
 
 from collections.abc import Mapping
@@ -13,20 +13,20 @@ import numpy as np
 from humanwalk.body import Side
 from humanwalk.body.markers import markers
 from humanwalk.exchange.motion import GroundForce, ground_forces, marker_paths, sample_rate
+from humanwalk.extras import missing_package
 from humanwalk.files import write_whole
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 
 R_WF: Array = np.diag([-1.0, 1.0, -1.0])
-"""From a force plate's frame F, whose z points down as the makers of plates have it, to W."""
+"""From a force plate's frame F, whose z points down by convention, to W."""
 
 
 def write_c3d(run: Run, folder: Path) -> list[Path]:
     """Write run.c3d.
 
-    Each foot has a plate of its own, right then left, both as large as the walk: type 2, whose channels are force and
-    moment about the middle of the plate's surface.
+    Each foot has its own plate, right then left, both as large as the walk. They are of type 2: channels are force and
+    moment about the center of the plate's surface.
 
     Raises:
         ParameterError: ezc3d is not installed.
@@ -41,7 +41,7 @@ def _ezc3d() -> ModuleType:
     try:
         import ezc3d
     except ImportError:
-        raise ParameterError("--to c3d: the package ezc3d is not installed; run: pip install humanwalk[c3d]") from None
+        raise missing_package("ezc3d", "c3d") from None
     module: ModuleType = ezc3d
     return module
 
@@ -93,7 +93,7 @@ def _channels(load: GroundForce) -> Array:
 
 
 def _corners(loads: Mapping[Side, GroundForce]) -> Array:
-    """Corners of a plate around W's origin that holds every centre of pressure [mm], shape (3, 4), in F's order."""
+    """Corners of a plate around Wo that contains every center of pressure [mm], shape (3, 4), in F's order."""
     reach = np.ceil(np.max([np.abs(load.point).max(axis=0) for load in loads.values()], axis=0) + 0.5)
     signs = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
     return np.asarray(1000.0 * R_WF @ (signs * reach).T)

@@ -1,4 +1,7 @@
-"""A run as comma-separated values: one row per sample, one column per signal, units in the columns' names."""
+"""A run as comma-separated values: one row per sample, one column per signal, units in the column names.
+
+No cell is a formula to a spreadsheet: values are numbers, and column names begin with a letter (`read_signals`).
+"""
 
 from pathlib import Path
 
@@ -9,7 +12,7 @@ from humanwalk.run.folder import Run
 
 
 def write_csv(run: Run, folder: Path) -> list[Path]:
-    """Write signals.csv; numbers keep all their digits."""
+    """Write signals.csv, with all digits of every number."""
     path = folder / "signals.csv"
     write_whole(path, lambda beside: csv.write_csv(run.signals, beside))
     return [path]

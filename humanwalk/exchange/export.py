@@ -1,4 +1,4 @@
-"""Writes a run in another program's formats."""
+"""Writes a run in the formats of other programs."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +12,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 
 NEED_PHYSICS = ("opensim", "c3d")
-"""Formats that hold forces."""
+"""Formats that contain forces."""
 
 FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
     "opensim": write_opensim,
@@ -20,20 +20,20 @@ FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
     "csv": write_csv,
     "mat": write_mat,
 }
-"""Every format by name; a function writes a run's files into a folder and returns their paths."""
+"""Formats by name: functions that write the files of a run into a folder and return their paths."""
 
 
 def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
     """Write a run in a format into a folder, each file whole or not at all.
 
     Args:
-        run: what to write.
-        to: one of FORMATS.
-        output: folder; by default the format's name inside the run's.
+        run: What to write.
+        to: One of FORMATS.
+        output: Folder; by default one inside the run's, named by the format.
 
     Raises:
-        ParameterError: unknown format, a run without the forces that it holds, a missing optional package, or a file
-            that cannot be written.
+        ParameterError: Unknown format, a run without the required forces, a missing optional package, or a file that
+            cannot be written.
     """
     if to not in FORMATS:
         raise ParameterError(f"--to {to}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")

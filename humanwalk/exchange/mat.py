@@ -1,4 +1,4 @@
-"""A run for MATLAB and Octave."""
+"""A run as a file for MATLAB and Octave."""
 
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,8 @@ from humanwalk.run.folder import SCENARIO, Run
 def write_mat(run: Run, folder: Path) -> list[Path]:
     """Write run.mat.
 
-    `signals.RightLegTibiaMotion.angle_rad` is the signal of that name, a column vector; `signals.time_s` the time;
-    `scenario` the text of the scenario.
+    `signals.JOINT.angle_rad` is the signal of that name, a column vector; `signals.time_s` is the time, and `scenario`
+    the text of the scenario.
     """
     signals: dict[str, Any] = {}
     for name in run.signals.column_names:

@@ -1,4 +1,4 @@
-"""What a run's recorded numbers mean in space: plant positions, marker paths, ground forces per foot."""
+"""Motion and forces of a run in space: plant positions, marker paths, ground reaction force per foot."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ from humanwalk.systems.signal import state_columns
 
 @dataclass(frozen=True)
 class GroundForce:
-    """What a force plate under one foot would show, in W; all of it is defined at every time.
+    """Measurement of a force plate under one foot, in W; defined at every time.
 
     Attributes:
-        force: on the foot [N], shape (rows, 3); zero while unloaded.
-        point: centre of pressure [m], shape (rows, 3). While the foot is unloaded it glides in a straight line from
-            where it lifted to where it will land (before the first and after the last contact it stays), so that
-            filters and splines of other programs find no jump.
-        free_moment: about the vertical through `point` [N m], shape (rows,); zero while unloaded.
+        force: Force on the foot [N], shape (rows, 3); zero while unloaded.
+        point: Center of pressure [m], shape (rows, 3). While the foot is unloaded it is interpolated linearly from
+            toe-off to touchdown, and constant before the first and after the last contact, so that filters and splines
+            of other programs see no jump.
+        free_moment: Moment about the vertical through `point` [N m], shape (rows,); zero while unloaded.
     """
 
     force: Array
@@ -61,7 +61,7 @@ def marker_paths(run: Run) -> dict[str, Array]:
 
 
 def ground_force(run: Run, side: Side) -> GroundForce:
-    """The ground's force on one foot."""
+    """Ground reaction force on one foot."""
     signals, foot = run.signals, f"{side.lower()}_foot"
     time = signals[TIME].to_numpy()
     loaded = signals[f"{foot}.loaded"].to_numpy() > 0.5
@@ -75,10 +75,10 @@ def ground_force(run: Run, side: Side) -> GroundForce:
 
 
 def ground_forces(run: Run) -> dict[Side, GroundForce]:
-    """The ground's force on both feet."""
+    """Ground reaction force on both feet."""
     return {side: ground_force(run, side) for side in SIDES}
 
 
 def sample_rate(run: Run) -> float:
-    """Rows per second of the record [1/s]."""
+    """Sample rate of the signals [1/s]."""
     return 1.0 / run.scenario.recording.signal_period

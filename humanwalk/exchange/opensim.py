@@ -1,7 +1,7 @@
-"""A run for OpenSim: angles, torques, ground forces as external loads, and markers.
+"""A run for OpenSim: angles, torques, ground reaction forces as external loads, and markers.
 
 Axes are OpenSim's: x forward, y up, z right. Joints are named and signed as in the full-body model of Rajagopal et al.
-(2016), see `humanwalk.body.opensim_names`; joints that it has not keep their own names, which OpenSim passes over.
+(2016), see `humanwalk.body.opensim_names`. Joints absent from that model keep their names; OpenSim ignores them.
 """
 
 import io
@@ -62,11 +62,11 @@ def write_opensim(run: Run, folder: Path) -> list[Path]:
 
 
 def angles(run: Run) -> MotionTable:
-    """Place [m] and turn [deg] of the pelvis, and every joint's angle [deg]; the back's sums besides."""
+    """Position [m] and orientation [deg] of the pelvis, and the angle of every joint and of the back [deg]."""
     signals = run.signals
     quaternion = matrix(signals, [f"pelvis.quaternion_{axis}" for axis in "wxyz"])
     R_WP = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()
-    # Both frames turned: at rest OpenSim's pelvis is parallel to its ground as ours is to W.
+    # Both frames are rotated: at rest OpenSim's pelvis is parallel to its ground, as ours is to W.
     turns = Rotation.from_matrix(R_OW @ R_WP @ R_OW.T).as_euler("ZXY")
     columns: dict[str, Array] = {
         name: np.rad2deg(np.unwrap(turn)) for name, turn in zip(PELVIS_ROTATIONS, turns.T, strict=True)
@@ -83,7 +83,7 @@ def angles(run: Run) -> MotionTable:
 
 
 def torques(run: Run) -> MotionTable:
-    """What every joint feels of its actuator [N m], under its coordinate's name with `_moment`."""
+    """Torque of every joint's actuator [N m], under the name of its coordinate with `_moment`."""
     columns = {}
     for name in joint_names(run.signals):
         coordinate, factor = COORDINATES.get(name, (name, 1.0))
@@ -92,7 +92,7 @@ def torques(run: Run) -> MotionTable:
 
 
 def external_loads(run: Run) -> MotionTable:
-    """Force [N], point [m] and torque [N m] of the ground on each foot; see `GroundForce` for an unloaded one."""
+    """Force [N], point [m] and torque [N m] of the ground on each foot; see `GroundForce`."""
     columns: dict[str, Array] = {}
     for side, load in ground_forces(run).items():
         letter = side[0].lower()
@@ -106,7 +106,7 @@ def external_loads(run: Run) -> MotionTable:
 
 
 def trc_text(file_name: str, paths: dict[str, Array], time: Array, rate: float) -> str:
-    """Marker paths in W [m] as a TRC file: millimetres, OpenSim's axes."""
+    """Marker paths in W [m] as the text of a TRC file: millimeters, OpenSim's axes."""
     rows = time.size
     text = io.StringIO()
     text.write(f"PathFileType\t4\t(X/Y/Z)\t{file_name}\n")
@@ -121,6 +121,6 @@ def trc_text(file_name: str, paths: dict[str, Array], time: Array, rate: float) 
 
 
 def _table(run: Run, columns: dict[str, Array], in_degrees: bool) -> MotionTable:
-    # -0 is a number that surprises people.
+    # Turns -0 into 0.
     data = np.column_stack(list(columns.values())) + 0.0
     return MotionTable(tuple(columns), run.signals[TIME].to_numpy(), data, in_degrees)

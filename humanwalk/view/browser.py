@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from humanwalk.body.skeleton import Vector3
+from humanwalk.extras import missing_package
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.view.replay import content_policy, safe_page
 
@@ -196,7 +197,7 @@ def open_browser() -> Iterator["Browser"]:
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
-        raise ParameterError(missing_extra("playwright")) from None
+        raise missing_package("playwright", "video") from None
     with sync_playwright() as playwright:
         executable = find_browser()
         try:
@@ -234,11 +235,6 @@ def find_browser() -> str | None:
             )
         return found
     return next(filter(None, map(shutil.which, (*BROWSER_NAMES, *MACOS_BROWSERS))), None)
-
-
-def missing_extra(package: str) -> str:
-    """Message for a missing package of the extra `video`."""
-    return f"video: the Python package {package} is not installed; in the checkout run: pip install -e '.[video]'"
 
 
 def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max_duration: float) -> Stage:

@@ -1,4 +1,4 @@
-"""A picture of a Diagram through pydot, by the system's Graphviz or by one that needs no root."""
+"""A picture of a Diagram, drawn by the system's Graphviz or by one that is installed without root."""
 
 import re
 import shutil
@@ -9,6 +9,7 @@ from pathlib import Path
 import pydot
 from pydrake.systems.framework import Diagram
 
+from humanwalk.extras import install_command
 from humanwalk.files import write_whole
 from humanwalk.quantity import ParameterError
 
@@ -20,16 +21,16 @@ PURE_FORMATS = ("svg", "png")
 
 
 def draw_diagram(diagram: Diagram, path: Path, depth: int = 1, every_port: bool = False) -> None:
-    """Draw a diagram's systems and connections into an SVG, PNG or PDF file; the same diagram makes the same picture.
+    """Draw a diagram's systems and connections as SVG, PNG or PDF; the same diagram gives the same picture.
 
     Args:
-        diagram: what to draw.
-        path: the picture; its suffix says the format.
-        depth: how many levels of diagrams are opened.
-        every_port: whether ports that lead nowhere are drawn too; a plant has dozens.
+        diagram: What to draw.
+        path: The picture; its suffix is the format.
+        depth: Number of levels of diagrams that are expanded.
+        every_port: Whether to draw unconnected ports too; a plant has dozens.
 
     Raises:
-        ParameterError: the format is unknown, or there is no Graphviz, with what to install.
+        ParameterError: The format is unknown, or there is no Graphviz.
     """
     kind = path.suffix.removeprefix(".").lower()
     if kind not in FORMATS:
@@ -43,10 +44,10 @@ def draw_diagram(diagram: Diagram, path: Path, depth: int = 1, every_port: bool 
 
 
 def find_graphviz(kind: str) -> str:
-    """The program that draws a format: the system's dot, else that of the Python package graphviz-pure.
+    """Program that draws a format: the system's dot, else the one of the Python package graphviz-pure.
 
     Raises:
-        ParameterError: there is neither.
+        ParameterError: Neither is installed.
     """
     if dot := shutil.which("dot"):
         return dot
@@ -56,7 +57,7 @@ def find_graphviz(kind: str) -> str:
     also = "" if kind in PURE_FORMATS else f" (or draw one of {', '.join(PURE_FORMATS)})"
     raise ParameterError(
         f"diagram: no Graphviz draws {kind}; install it: apt-get install graphviz; "
-        f"or with no root, for {' and '.join(PURE_FORMATS)}: pip install 'humanwalk[diagram]'{also}"
+        f"or without root, for {' and '.join(PURE_FORMATS)}: {install_command('diagram')}{also}"
     )
 
 
@@ -69,7 +70,7 @@ WIRE_END = re.compile(r"\bs(\d+):([uy]\d+)\b")
 
 
 def with_wired_ports(text: str) -> str:
-    """Drake's graph with only those ports of its systems that a wire leads to, and classes without their modules."""
+    """Drake's graph with only the connected ports of its systems, and class names without modules."""
     wired = set(WIRE_END.findall(text))
 
     def node(match: re.Match[str]) -> str:
@@ -93,7 +94,7 @@ def _cell(port: tuple[str, str] | None) -> str:
 
 
 def with_own_numbers(text: str) -> str:
-    """Drake's graph with its nodes numbered from one: Drake counts all systems that the process ever made."""
+    """Drake's graph with its nodes numbered from one: Drake numbers all systems of the process."""
     numbers: dict[str, str] = {}
 
     def renumber(match: re.Match[str]) -> str:

@@ -3,7 +3,7 @@
 import threading
 import webbrowser
 from functools import partial
-from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 from rich.console import Console
@@ -51,8 +51,7 @@ class _OnePage(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         # Another name that resolves to this machine is a web site's attempt to read the page (DNS rebinding).
-        assert isinstance(self.server, HTTPServer)
-        port = self.server.server_port
+        port = self.connection.getsockname()[1]
         if self.headers.get("Host") not in (f"{LOCALHOST}:{port}", f"localhost:{port}"):
             self.send_error(421)
             return

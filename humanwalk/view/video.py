@@ -13,10 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import Literal, get_args
 
+from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.run.folder import Run
-from humanwalk.view.browser import Camera, missing_extra, open_stage
+from humanwalk.view.browser import Camera, open_stage
 from humanwalk.view.replay import CAMERA_POSITION, CAMERA_TARGET
 
 View = Literal["follow", "side", "front", "orbit"]
@@ -214,8 +215,10 @@ def write_snapshot(
     Raises:
         ParameterError: No run or replay, a time outside it, a suffix other than .png, or missing programs.
     """
-    from PIL import Image, ImageDraw, ImageFont
-
+    try:
+        from PIL import Image, ImageDraw, ImageFont
+    except ImportError:
+        raise missing_package("pillow", "video") from None
     opened = Run.open(run)
     page, duration = opened.replay, opened.summary["duration_s"]
     if output.suffix.lower() != ".png":
@@ -250,7 +253,7 @@ def find_ffmpeg() -> str:
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError:
-        raise ParameterError(missing_extra("imageio-ffmpeg")) from None
+        raise missing_package("imageio-ffmpeg", "video") from None
     try:
         return str(get_ffmpeg_exe())
     except RuntimeError:

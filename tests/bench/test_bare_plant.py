@@ -1,4 +1,4 @@
-"""The bare plant walks the same walk, or says that it does not."""
+"""The bare plant repeats the recorded walk, or produces an error."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def recorded(name, **overrides):
     ("name", "overrides"),
     [
         ("thesis", {}),
-        ("thesis", {"actuators__law": "implicit"}),
+        ("thesis", {"actuation__pd__law": "implicit"}),
         ("thesis", {"contact": "hydroelastic"}),
         ("walk", {}),
         ("stand", {"pushes__pushes": "[{time: 0.02, duration: 0.02, impulse: 2.0}]"}),

@@ -1,4 +1,4 @@
-"""Turns: who advances when, and that nothing is lost between them."""
+"""Simulations advance by turns, up to the given time."""
 
 import pytest
 from hypothesis import given
@@ -24,7 +24,7 @@ def test_simulations_advance_by_turns_and_the_order_alternates():
 
 
 @given(st.floats(0.001, 20.0), st.floats(0.0, 5.0), st.floats(0.01, 1.0))
-def test_turns_end_where_they_are_told_to(length, begin, chunk):
+def test_turns_end_at_the_given_time(length, begin, chunk):
     log = []
     in_turns({"a": advancing("a", log)}, begin + length, begin, chunk)
     ends = [until for _, until in log]

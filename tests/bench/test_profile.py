@@ -1,4 +1,4 @@
-"""Exclusive times, on a clock that tests turn."""
+"""Exclusive times, with a clock that is advanced by hand."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from humanwalk.bench.profile import UPSTREAM, ExclusiveClock, profiled
 
 
 class HandClock:
-    """A clock that goes on only when told to."""
+    """A clock that is advanced by hand."""
 
     def __init__(self):
         self.now = 0.0
@@ -84,7 +84,7 @@ def test_a_function_that_raises_is_counted_and_raises(hand):
     assert clock.seconds == {"outer": 0.0, "inner": 1.0}
 
 
-def test_a_system_is_not_charged_for_what_it_pulls(hand):
+def test_upstream_computations_do_not_count_for_a_system(hand):
     with profiled(hand) as clock:
         builder = DiagramBuilder()
         source, reader = builder.AddSystem(Source(hand)), builder.AddSystem(Reader(hand))
@@ -102,7 +102,7 @@ def test_a_system_is_not_charged_for_what_it_pulls(hand):
     assert clock.calls == {"Source": 1, "Reader": 2, UPSTREAM: 3}
 
 
-def test_what_is_made_outside_of_the_block_is_not_timed(hand):
+def test_systems_made_outside_of_the_block_are_not_timed(hand):
     before = (InputPort.Eval, LeafSystem.DeclareVectorOutputPort)
     with pytest.raises(ZeroDivisionError), profiled(hand) as clock:
         _ = 1 / 0

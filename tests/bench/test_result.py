@@ -59,7 +59,7 @@ def test_the_parts_are_the_whole(repeats):
     assert cost.plant + cost.solvers + cost.systems + cost.logging == pytest.approx(cost.cpu)
 
 
-def test_what_disturbs_one_turn_of_one_repeat_does_not_count():
+def test_a_disturbance_of_one_turn_of_one_repeat_does_not_count():
     calm = [0.05, 0.06, 0.07]
     disturbed = [[9.0, 0.06, 0.07], [0.05, 9.0, 0.07], [0.05, 0.06, 9.0]]
     cost = put_together([repeat(turns, turns, turns) for turns in disturbed], 0.3)
@@ -71,7 +71,7 @@ def test_a_file_holds_the_whole_result(tmp_path):
     assert read_result(tmp_path / "bench.json") == RESULT
 
 
-def test_what_is_not_complete_says_so(tmp_path):
+def test_incomplete_results_are_marked(tmp_path):
     assert RESULT.complete
     assert not PART.complete
     write_result(tmp_path / "bench.json", PART)
@@ -117,7 +117,7 @@ def test_a_time_that_is_not_positive_and_finite_is_refused(tmp_path, value):
         read_result(file)
 
 
-def test_a_file_that_is_not_there_is_refused(tmp_path):
+def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(ParameterError, match="No such file"):
         read_result(tmp_path / "none.json")
 
@@ -139,7 +139,7 @@ def test_results_without_a_scenario_in_common_are_refused():
         ratios(RESULT, replace(RESULT, scenarios={"walk": COST}))
 
 
-def test_a_comparison_says_what_was_not_alike():
+def test_a_comparison_names_different_conditions():
     assert comparison_table(RESULT, faster(2.0)).title == "new / old"
     other = replace(RESULT, machine=RESULT.machine | {"processor": "another"})
     assert "processor" in comparison_table(RESULT, other).title

@@ -363,7 +363,7 @@ def test_bench_into_no_folder_is_refused_before_it_measures(refusal):
 
 def test_bench_compares_only_what_it_wrote(refusal, tmp_path):
     (tmp_path / "other.json").write_text("{}")
-    assert "other.json: is no result" in refusal("bench", "--compare", "other.json", "other.json")
+    assert "other.json: not a result" in refusal("bench", "--compare", "other.json", "other.json")
 
 
 # model and diagram.

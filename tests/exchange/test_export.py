@@ -1,9 +1,11 @@
-"""What is exported, read back by readers of this test's own, has the numbers, units and axes of the run."""
+"""Exported files, read back by independent readers, have the numbers, units and axes of the run."""
 
 import csv
+import shutil
 import xml.etree.ElementTree as ET
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from scipy.io import loadmat
 from scipy.spatial.transform import Rotation
@@ -18,6 +20,7 @@ from humanwalk.exchange.motion import ground_force, marker_paths
 from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import SIGNALS, Run
 
 
 def read_storage(path):
@@ -33,7 +36,7 @@ def read_storage(path):
 
 
 def read_trc(path):
-    """Marker paths in millimetres by name, the frames' times, and the header."""
+    """Marker paths in millimeters by name, the frames' times, and the header."""
     lines = path.read_text().split("\n")
     head = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=True))
     names = lines[3].split("\t")[2::3]
@@ -90,7 +93,7 @@ def test_back_is_the_sum_of_its_joints(opensim_folder, signals):
         np.testing.assert_allclose(columns[coordinate], factor * np.rad2deg(total), rtol=1e-10, atol=1e-10)
 
 
-def test_pelvis_turns_as_opensims_coordinates_do(opensim_folder, signals):
+def test_pelvis_rotation_is_in_opensims_coordinates(opensim_folder, signals):
     _, columns = read_storage(opensim_folder / "angles.mot")
     turns = np.deg2rad([columns[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")]).T
     R_OP = Rotation.from_euler("ZXY", turns).as_matrix()
@@ -111,7 +114,7 @@ def test_opensims_world_is_x_forward_y_up_z_right():
     assert np.linalg.det(R_OW) == pytest.approx(1.0)
 
 
-def test_torques_are_newton_metres_of_every_joint(opensim_folder, signals):
+def test_torques_are_newton_meters_of_every_joint(opensim_folder, signals):
     flags, columns = read_storage(opensim_folder / "torques.sto")
     assert flags["inDegrees"] == "no"
     assert len(columns) == 1 + 42
@@ -131,7 +134,7 @@ def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_ground_force_is_finite_always_and_nothing_when_unloaded(run, side):
+def test_ground_force_is_always_finite_and_zero_when_unloaded(run, side):
     load = ground_force(run, side)
     loaded = run.signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
     assert np.isfinite(np.column_stack((load.force, load.point, load.free_moment))).all()
@@ -139,7 +142,7 @@ def test_ground_force_is_finite_always_and_nothing_when_unloaded(run, side):
     assert not load.free_moment[~loaded].any()
 
 
-def test_point_of_an_unloaded_foot_glides_to_where_it_lands(run):
+def test_point_of_an_unloaded_foot_is_interpolated_to_touchdown(run):
     load = ground_force(run, "Right")
     loaded = run.signals["right_foot.loaded"].to_numpy() > 0.5
     x = load.point[:, 0]
@@ -165,7 +168,7 @@ def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder, run):
         np.testing.assert_allclose(np.cross(point, force) + torque, expected, atol=1e-8)
 
 
-def test_external_loads_xml_names_columns_that_are_there(opensim_folder):
+def test_external_loads_xml_names_existing_columns(opensim_folder):
     root = ET.parse(opensim_folder / "external_loads.xml").getroot()
     _, columns = read_storage(opensim_folder / root.findtext(".//datafile"))
     forces = root.findall(".//ExternalForce")
@@ -176,7 +179,7 @@ def test_external_loads_xml_names_columns_that_are_there(opensim_folder):
             assert all(f"{prefix}{axis}" in columns for axis in "xyz")
 
 
-def test_markers_are_millimetres_in_opensims_axes(opensim_folder, run, signals):
+def test_markers_are_millimeters_in_opensims_axes(opensim_folder, run, signals):
     paths, time, head = read_trc(opensim_folder / "markers.trc")
     assert head["Units"] == "mm"
     assert float(head["DataRate"]) == 200
@@ -217,7 +220,7 @@ def test_mat_keeps_every_number(run, signals):
     assert "stature: 1.68" in read["scenario"]
 
 
-def test_export_names_its_files_and_goes_where_it_is_told(run, tmp_path):
+def test_export_prints_its_files_and_writes_into_the_given_folder(run, tmp_path):
     result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path / "out")])
     assert result.exit_code == 0, result.output
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["signals.csv"]
@@ -227,3 +230,19 @@ def test_unknown_format_is_refused(run, tmp_path):
     with pytest.raises(ParameterError, match="allowed: opensim, c3d, csv, mat"):
         export_run(run, "opensm", tmp_path)
     assert set(FORMATS) == {"opensim", "c3d", "csv", "mat"}
+
+
+def test_csv_has_no_cell_that_a_spreadsheet_executes(run, signals, tmp_path):
+    """A spreadsheet takes text that begins with one of =+-@ for a formula; only numbers may be negative."""
+    (path,) = export_run(run, "csv", tmp_path / "out")
+    with path.open(encoding="utf-8", newline="") as file:
+        names, *rows = csv.reader(file)
+    assert [name for name in names if not name[0].isalpha()] == []
+    assert all(np.isfinite(float(cell)) for row in rows for cell in row)
+    # A run folder of somebody else is not read when a column has such a name.
+    folder = shutil.copytree(run.path, tmp_path / "hostile")
+    column = signals.column_names[5]
+    hostile = signals.rename_columns([f"=cmd|' /C calc'!A0.{name}" if name == column else name for name in names])
+    pq.write_table(hostile, folder / SIGNALS)
+    with pytest.raises(ParameterError):
+        export_run(Run.open(folder), "csv", tmp_path / "out")

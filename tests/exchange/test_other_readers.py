@@ -1,4 +1,4 @@
-"""Other programs' own readers find the numbers and units of the run; skipped where they are not installed."""
+"""Readers of other programs return the numbers and units of the run; skipped where they are not installed."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def c3d(run, tmp_path_factory):
     return ezc3d.c3d(str(path), extract_forceplat_data=True)
 
 
-def test_c3d_markers_are_millimetres_with_names_and_landmarks(c3d, run):
+def test_c3d_markers_are_millimeters_with_names_and_landmarks(c3d, run):
     point = c3d["parameters"]["POINT"]
     assert point["UNITS"]["value"] == ["mm"]
     assert point["RATE"]["value"][0] == 200
@@ -40,7 +40,7 @@ def test_c3d_force_plate_of_each_foot_shows_its_ground_force(c3d, run, plate, si
     np.testing.assert_allclose(found["Tz"][2, loaded], 1000 * load.free_moment[loaded], atol=2.0)
 
 
-def test_c3d_plate_holds_every_centre_of_pressure(c3d, run):
+def test_c3d_plate_contains_every_center_of_pressure(c3d, run):
     low, high = (bound(c3d["data"]["platform"][0]["corners"], axis=1) for bound in (np.min, np.max))
     for side in SIDES:
         point = 1000 * ground_force(run, side).point
@@ -50,7 +50,7 @@ def test_c3d_plate_holds_every_centre_of_pressure(c3d, run):
 
 def test_without_ezc3d_the_extra_is_named(run, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "ezc3d", None)
-    with pytest.raises(ParameterError, match=r"pip install humanwalk\[c3d\]"):
+    with pytest.raises(ParameterError, match=r"pip install -e '\.\[c3d\]"):
         c3d_module.write_c3d(run, tmp_path)
     assert not list(tmp_path.iterdir())
 

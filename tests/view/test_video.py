@@ -87,7 +87,7 @@ def test_a_run_without_replay_is_refused(run):
 )
 def test_without_the_extra_one_is_told_what_to_install(run, monkeypatch, module, need):
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(ParameterError, match=rf"{need} is not installed.*pip install -e '\.\[video\]'"):
+    with pytest.raises(ParameterError, match=rf"{need}: not installed.*pip install -e '\.\[video\]'"):
         if need == "playwright":
             with open_browser():
                 pass
