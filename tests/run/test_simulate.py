@@ -192,7 +192,7 @@ def test_summary_is_printed_with_the_support(walk, capsys):
 
 @pytest.fixture(scope="module")
 def fall():
-    return simulate(thesis(5.0, balance__support__enabled="false"))
+    return simulate(thesis(5.0, controller__thesis__balance__support__enabled="false"))
 
 
 def test_walker_without_support_falls_and_its_record_is_kept(fall):
