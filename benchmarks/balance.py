@@ -104,7 +104,7 @@ def seeds(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def pushes(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """Walks once to the time of each push, and from there again for every impulse and direction."""
     times = [time + args.later for time in PUSH_TIMES]
-    walker = make_diagram(walk(1.0, times[-1], **{"pushes.pushes": "[{impulse: 0.0}]"}))
+    walker = make_diagram(walk(1.0, times[-1], **{"pushes.given": "[{impulse: 0.0}]"}))
     before = Simulator(walker)
     for time in times:
         before.AdvanceTo(time)

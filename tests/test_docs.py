@@ -49,7 +49,7 @@ def test_the_block_diagram_of_every_scenario_is_in_the_book(name):
         "run docs/make_gallery.py"
     )
     # A scenario with pushes exports their force, too.
-    assert drawn.count('class="edge"') == graph.count(" -> ") - bool(scenario.pushes.pushes)
+    assert drawn.count('class="edge"') == graph.count(" -> ") - bool(scenario.pushes.given)
 
 
 def gains(parameters, path=""):

@@ -8,6 +8,6 @@ from humanwalk.walking.push import PushParameters
 def add_pushes(world: World, parameters: PushParameters) -> None:
     """Add `pushes`; its forces are empty where the scenario has none."""
     pushes = world.add("pushes", PushSource(world.plant, parameters, world.seed))
-    if parameters.any:
-        # Without pushes the plant would still ask for them in every step.
+    if parameters != PushParameters():
+        # Without pushes the plant would still evaluate them in every step.
         world.spatial_forces.append(pushes.GetOutputPort("spatial_forces"))

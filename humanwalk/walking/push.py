@@ -6,7 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body.limbs import CHEST
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
+
+MIN_RANDOM_INTERVAL = 0.1
+"""Smallest mean time between random pushes [s]: the duration of a push."""
 
 
 @dataclass(frozen=True)
@@ -17,6 +20,8 @@ class Push:
     """When the force begins."""
 
     duration: float = quantity(0.1, "s", 0.001, 60.0)
+    """How long it lasts."""
+
     impulse: float = quantity(30.0, "N s", 0.0, 1000.0)
     """Force times duration."""
 
@@ -41,10 +46,11 @@ class Push:
 class PushParameters:
     """Pushes at given times, and pushes in random directions at random times."""
 
-    pushes: tuple[Push, ...] = ()
+    given: tuple[Push, ...] = ()
+    """Pushes at given times."""
 
     random_interval: float = quantity(0.0, "s", 0.0, 600.0)
-    """Mean time between random pushes, which follow from the scenario's seed; 0 for none."""
+    """Mean time between random pushes, which are drawn from the scenario's seed; 0 for none."""
 
     random_impulse: float = quantity(20.0, "N s", 0.0, 1000.0)
     """Largest impulse of a random push; impulses are uniformly distributed from 0."""
@@ -52,10 +58,13 @@ class PushParameters:
     random_until: float = quantity(60.0, "s", 0.0, 3600.0)
     """End of the random pushes."""
 
-    @property
-    def any(self) -> bool:
-        """Whether there are any pushes."""
-        return bool(self.pushes) or self.random_interval > 0.0
+    def __post_init__(self) -> None:
+        """Raise ParameterError for random pushes without number."""
+        if 0.0 < self.random_interval < MIN_RANDOM_INTERVAL:
+            raise ParameterError(
+                f"random_interval: {self.random_interval:g} is out of range; allowed: 0, or {MIN_RANDOM_INTERVAL:g} to "
+                "600 s; write a longer interval, or 0 for none"
+            )
 
 
 def all_pushes(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
@@ -68,4 +77,4 @@ def all_pushes(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
             impulse, direction = random.uniform(0.0, parameters.random_impulse), random.uniform(-math.pi, math.pi)
             drawn.append(Push(time=time, impulse=impulse, direction=direction))
             time += random.exponential(parameters.random_interval)
-    return (*parameters.pushes, *drawn)
+    return (*parameters.given, *drawn)

@@ -33,7 +33,7 @@ def test_nothing_but_the_ground_acts_on_it():
 
 def test_who_is_to_be_pushed_has_a_source_of_pushes():
     push = "[{time: 0.0, duration: 0.1, impulse: 10.0}]"
-    diagram = make_diagram(load_scenario("walk", {"pushes.pushes": push}))
+    diagram = make_diagram(load_scenario("walk", {"pushes.given": push}))
     plant, source = diagram.GetSubsystemByName("plant"), diagram.GetSubsystemByName("pushes")
     assert isinstance(source, PushSource)
     context = diagram.CreateDefaultContext()

@@ -1,0 +1,41 @@
+"""Pushes act with every controller."""
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario, parse_scenario
+
+PUSH = {"pushes.given": "[{time: 0.02, duration: 0.05, impulse: 10.0, direction: 1.5707963}]"}
+
+
+def momentum_along_y(scenario: str, overrides: dict[str, str]) -> float:
+    """Momentum of the body along y after 0.08 s [N s]."""
+    walker = make_walker(load_scenario(scenario, overrides))
+    simulator = Simulator(walker)
+    simulator.AdvanceTo(0.08)
+    velocity: float = walker.GetOutputPort("com").Eval(simulator.get_context())[4]
+    return 70.0 * velocity
+
+
+@pytest.mark.parametrize(
+    ("scenario", "overrides"),
+    [("thesis", {"controller.thesis.balance.support.enabled": "false"}), ("stand", {})],
+    ids=["thesis", "balanced"],
+)
+def test_a_push_gives_the_body_momentum_whatever_the_controller(scenario, overrides):
+    gained = momentum_along_y(scenario, overrides | PUSH) - momentum_along_y(scenario, overrides)
+    # The feet return a part of it.
+    assert 3.0 < gained <= 10.5
+
+
+def test_a_walker_without_pushes_records_none():
+    walker = make_walker(parse_scenario(""))
+    np.testing.assert_array_equal(walker.GetOutputPort("push").Eval(walker.CreateDefaultContext()), 0.0)
+
+
+def test_random_pushes_need_time_between_them():
+    with pytest.raises(ParameterError, match=r"^pushes\.random_interval: 1e-09 .* allowed: 0, or 0\.1 to 600 s"):
+        parse_scenario("pushes: {random_interval: 1e-9}")
