@@ -1,4 +1,4 @@
-"""A report of a run beside people: tables for a terminal, a page with figures for a browser, numbers for a program."""
+"""Comparison of a run with human gait: tables for a terminal, a page with figures, numbers as JSON."""
 
 import html
 from collections.abc import Iterator, Sequence
@@ -25,35 +25,35 @@ FIGURES = ("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")
 UP_AT_ITS_END = ("completed", "interrupted", "unfinished")
 
 CURVE_HEADER = ("angle [deg]", "correlation", "difference", "rms", "within 1 SD [%]")
-MEASURE_HEADER = ("measure", "run", "people", "source")
+MEASURE_HEADER = ("measure", "run", "human", "source")
 
 DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2}
-"""Of a measure in a table, by its unit."""
+"""Decimals of a measure in a table, by its unit."""
 
 NOTES = (
     "Run: mean ± standard deviation over the steps, strides or stances of both legs in steady walking.",
-    "Difference, rms: of the run's angle minus people's mean; within 1 SD: share of the cycle, for people 68 %.",
-    "Angles of people: Schwartz, Rozumalski, Trost (2008), children at the speed of their choice, whose curves have "
-    "the shape of adults' at the same dimensionless speed.",
-    "People's pelvis plane leans some 10 degrees forward in upright standing, this model's does not: the difference of "
-    "pelvis tilt, and as much of the hip's, is one of zeros.",
-    "Cost of transport is the integral of all joints' |torque x rate| per weight and distance, which is not people's "
-    "metabolic cost. No value for people is given where no source is known for the same measure.",
+    "Difference, rms: the run's angle minus the human mean; within 1 SD: fraction of the cycle, 68 % for humans.",
+    "Human angles: Schwartz, Rozumalski, Trost (2008), children at self-selected speed, whose curves have the shape of "
+    "adults' at the same dimensionless speed.",
+    "The human pelvic plane is tilted forward by about 10 degrees in upright standing, this model's is not: that part "
+    "of the difference in pelvis tilt and hip angle is an offset of the zero.",
+    "Cost of transport is the integral of all joints' |torque x rate| per weight and distance, which is not the "
+    "metabolic cost. No human value is given where no source is known for the same measure.",
 )
 
 
 def compare_run(run: Run) -> Comparison:
-    """Compare a run with people.
+    """Compare a run with human gait.
 
     Raises:
-        ParameterError: it did not stay up, has no physics, or has no straight walk of some strides.
+        ParameterError: The run fell, has no physics, or has no straight walk of enough strides.
     """
     run.require_physics()
     end = run.summary["end"]
     if end not in UP_AT_ITS_END:
         raise ParameterError(
-            f"{run.path}: the run ended with '{end}' at {run.summary['duration_s']:.2f} s; allowed: one that was "
-            f"up to its end, for {MIN_STRIDES} strides of each leg; walk again, and end before with --duration"
+            f"{run.path}: the run ended with '{end}' at {run.summary['duration_s']:.2f} s; allowed: a "
+            f"run that did not fall, with {MIN_STRIDES} strides of each leg; re-run with a shorter --duration"
         )
     try:
         return compare(run.signals, run.scenario)
@@ -62,7 +62,7 @@ def compare_run(run: Run) -> Comparison:
 
 
 def to_json(comparison: Comparison) -> dict[str, Any]:
-    """Everything of a comparison, stride by stride, ready for JSON; null for what is no number."""
+    """A comparison stride by stride, ready for JSON; null for undefined values."""
     return {
         "strides": {side.lower(): count for side, count in comparison.strides.items()},
         "angles": {
@@ -91,7 +91,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def terminal_tables(comparison: Comparison) -> list[Table]:
-    """The tables for a terminal: angles, then measures with their sources."""
+    """Tables for a terminal: angles, then measures with their sources."""
     angles = Table(*CURVE_HEADER, box=box.SIMPLE)
     for row in curve_rows(comparison):
         angles.add_row(*row)
@@ -110,7 +110,7 @@ def write_report(run: Run, comparison: Comparison) -> Path:
     """
     figures = ((name, PLOTS[name](run)) for name in FIGURES)
     page = Template(files("humanwalk.view").joinpath("report_page.html").read_text(encoding="utf-8")).substitute(
-        title=html.escape(f"{run.path.resolve().name}: beside people"),
+        title=html.escape(f"{run.path.resolve().name}: comparison with human gait"),
         description=html.escape(run.scenario.description),
         strides=html.escape(
             ", ".join(f"{count} of the {side.lower()} leg" for side, count in comparison.strides.items())
@@ -159,7 +159,7 @@ def measure_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
 
 
 def sources(comparison: Comparison) -> list[str]:
-    """Where people's values come from, each once, in the order of the measures."""
+    """Sources of the human values, each once, in the order of the measures."""
     return list(dict.fromkeys(measure.people.source for measure in comparison.measures if measure.people))
 
 

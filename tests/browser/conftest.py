@@ -23,7 +23,7 @@ def browser():
 def short_run(browser, tmp_path_factory):
     """A run with its replay."""
     meshcat = make_meshcat()
-    outcome = simulate(load_scenario("thesis", {"duration": str(DURATION)}), meshcat)
+    outcome = simulate(load_scenario("thesis", {"duration": str(DURATION), "recording.frame_rate": "50"}), meshcat)
     folder = tmp_path_factory.mktemp("runs") / "short"
     folder.mkdir()
     (folder / REPLAY).write_text(static_page(meshcat), encoding="utf-8")

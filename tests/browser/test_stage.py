@@ -12,8 +12,8 @@ from humanwalk.view.video import camera
 pytestmark = pytest.mark.browser
 
 WIDTH, HEIGHT = 160, 120
-FRAME_TIMES = (0.125, 0.375)
-"""Frames of the replay, at 32 per second, that are instants of the signals, at 200 per second, too."""
+FRAME_TIMES = (0.12, 0.36)
+"""Times of frames, at 50 per second, at which signals, at 250 per second, are recorded too [s]."""
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def test_a_frame_shows_the_recorded_pose_of_every_body(stage, short_run, joints,
     np.testing.assert_allclose(shown, expected, rtol=0.0, atol=1e-6)
 
 
-def test_the_page_logs_no_complaint_and_asks_no_other_host(stage):
+def test_the_page_logs_no_error_and_requests_nothing(stage):
     stage.still(0.1, camera("follow", 0.1))
     assert stage.complaints == []
 

@@ -38,7 +38,7 @@ def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run, tmp_pa
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_a_moving_picture_has_every_frame_and_plays_over_and_over(short_run, tmp_path, suffix):
+def test_a_gif_or_webp_has_every_frame_and_loops(short_run, tmp_path, suffix):
     path = tmp_path / f"walk{suffix}"
     record_video(short_run.path, path, VideoParameters(frame_rate=10.0, width=WIDTH, height=HEIGHT))
     with Image.open(path) as picture:
@@ -47,7 +47,7 @@ def test_a_moving_picture_has_every_frame_and_plays_over_and_over(short_run, tmp
         assert picture.info["loop"] == 0
 
 
-def test_ctrl_c_leaves_no_video_and_no_half_of_one(short_run, tmp_path):
+def test_ctrl_c_leaves_no_file(short_run, tmp_path):
     def press(done, frames):
         if done == 2:
             signal.raise_signal(signal.SIGINT)
@@ -57,7 +57,7 @@ def test_ctrl_c_leaves_no_video_and_no_half_of_one(short_run, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_strip_holds_a_still_for_every_time(short_run, tmp_path):
+def test_a_strip_has_a_still_for_every_time(short_run, tmp_path):
     path = tmp_path / "strip.png"
     write_snapshot(short_run.path, path, [0.1, 0.2, 0.3], 100, 160, "side")
     with Image.open(path) as strip:
@@ -70,7 +70,7 @@ def test_a_strip_holds_a_still_for_every_time(short_run, tmp_path):
     assert pixels[:, 100:108].min() == 255.0
 
 
-def test_a_stretch_or_time_outside_the_replay_is_refused(short_run, tmp_path):
+def test_times_outside_the_replay_are_refused(short_run, tmp_path):
     with pytest.raises(ParameterError, match=r"--to: 2 .*allowed: 0 to 0.5 s"):
         record_video(short_run.path, tmp_path / "walk.mp4", VideoParameters(end=2.0))
     with pytest.raises(ParameterError, match=r"--times: 3 .*allowed: 0 to 0.5 s"):
@@ -78,14 +78,14 @@ def test_a_stretch_or_time_outside_the_replay_is_refused(short_run, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_browser_that_is_none_is_named(short_run, tmp_path, monkeypatch):
+def test_an_invalid_browser_is_named_in_the_error(short_run, tmp_path, monkeypatch):
     monkeypatch.setenv("CHROMIUM", "/bin/false")
     with pytest.raises(ParameterError, match=r"/bin/false does not start.*CHROMIUM") as error:
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL)
     assert "\n" not in str(error.value)
 
 
-def test_a_browser_without_webgl_is_told_from_one_with(short_run, tmp_path, monkeypatch):
+def test_a_browser_without_webgl_produces_an_error(short_run, tmp_path, monkeypatch):
     monkeypatch.setattr("humanwalk.view.browser.FLAGS", ("--disable-gpu", "--disable-3d-apis"))
     with pytest.raises(ParameterError, match=r"no WebGL.*install chromium"):
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL)

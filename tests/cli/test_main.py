@@ -1,4 +1,4 @@
-"""The command line as a person meets it: what it writes, what it prints, and how it says no."""
+"""The command line: files, output and errors."""
 
 import json
 import logging
@@ -185,7 +185,7 @@ def test_walk_writes_its_files(humanwalk, tmp_path):
     } <= run.summary.keys()
 
 
-def test_run_is_walked_again_from_its_own_scenario(humanwalk, tmp_path):
+def test_run_is_repeated_from_its_own_scenario(humanwalk, tmp_path):
     quick = ("--no-plots", "--no-replay")
     humanwalk("walk", "--duration", "0.1", "--set", "start.joint_noise=0.01", "-o", "first", *quick)
     code, _, _ = humanwalk("walk", "first/scenario.yaml", "-o", "again", *quick)
@@ -202,7 +202,7 @@ def test_walks_without_an_output_go_to_numbered_folders(humanwalk, tmp_path):
     assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["thesis", "thesis-2"]
 
 
-def test_settings_reach_the_run(humanwalk, tmp_path):
+def test_overrides_reach_the_run(humanwalk, tmp_path):
     humanwalk(
         *("walk", "--duration", "0.01", "--no-plots", "--no-replay", "-o", "walked"),
         *("--set", "controller.thesis.gait.path.step_height=0.12", "--set", "contact=hydroelastic"),
@@ -262,11 +262,11 @@ def test_interrupted_walk_keeps_its_run(tmp_path):
     ids=str,
 )
 @pytest.mark.parametrize("output", [(), ("-o", "new/folder")], ids=["default", "output"])
-def test_walk_that_cannot_be_is_refused_and_leaves_nothing(refusal, arguments, said, output):
+def test_invalid_walk_produces_one_line_and_leaves_no_file(refusal, arguments, said, output):
     assert said in refusal("walk", *arguments, *output, "--no-replay", "--no-plots")
 
 
-def test_output_that_holds_files_is_refused_and_left_alone(refusal, tmp_path):
+def test_nonempty_output_is_refused_and_unchanged(refusal, tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("years of work")
     assert "holds files already" in refusal("walk", "-o", "mine", "--no-replay")
@@ -286,13 +286,13 @@ def test_output_that_cannot_be_written_is_refused(refusal, tmp_path, output):
     assert output in refusal("walk", "-o", output, "--no-replay", "--duration", "0.01")
 
 
-def test_scenario_file_that_is_no_yaml_is_refused(refusal, tmp_path):
+def test_invalid_yaml_is_refused(refusal, tmp_path):
     (tmp_path / "mine.yaml").write_text("duration: 1\ngait: [1\n")
     assert "mine.yaml: not YAML at line" in refusal("walk", "mine.yaml")
 
 
 @pytest.mark.parametrize("command", ["replay", "plot"])
-def test_folder_that_holds_no_run_is_refused(refusal, command):
+def test_folder_without_run_is_refused(refusal, command):
     assert "no run" in refusal(command, "none")
 
 
@@ -329,7 +329,7 @@ def measured_until(monkeypatch):
     return set_
 
 
-def test_interrupted_bench_keeps_what_there_is(humanwalk, measured_until, tmp_path):
+def test_interrupted_bench_keeps_its_results(humanwalk, measured_until, tmp_path):
     measured_until(3, KeyboardInterrupt())
     code, out, err = humanwalk("bench", "stand", "walk", "--repeats", "2", "-o", "new.json")
     assert code == 130
@@ -341,7 +341,7 @@ def test_interrupted_bench_keeps_what_there_is(humanwalk, measured_until, tmp_pa
     assert "old has 3 of 4 repeats" in out
 
 
-def test_bench_interrupted_at_once_says_that_there_is_nothing(humanwalk, measured_until, tmp_path):
+def test_bench_interrupted_at_once_prints_that_nothing_was_measured(humanwalk, measured_until, tmp_path):
     measured_until(0, KeyboardInterrupt())
     code, _, err = humanwalk("bench", "stand", "-o", "new.json")
     assert code == 130
@@ -349,7 +349,7 @@ def test_bench_interrupted_at_once_says_that_there_is_nothing(humanwalk, measure
     assert not (tmp_path / "new.json").exists()
 
 
-def test_bench_that_fails_keeps_what_was_measured_before(humanwalk, measured_until, tmp_path):
+def test_failed_bench_keeps_previous_results(humanwalk, measured_until, tmp_path):
     measured_until(1, ParameterError("walk: fell; allowed: none"))
     code, _, err = humanwalk("bench", "stand", "walk", "-o", "new.json")
     assert code not in (0, 130)
@@ -357,11 +357,11 @@ def test_bench_that_fails_keeps_what_was_measured_before(humanwalk, measured_unt
     assert list(read_result(tmp_path / "new.json").scenarios) == ["stand"]
 
 
-def test_bench_into_no_folder_is_refused_before_it_measures(refusal):
+def test_bench_into_a_missing_folder_is_refused_before_it_measures(refusal):
     assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
 
 
-def test_bench_compares_only_what_it_wrote(refusal, tmp_path):
+def test_bench_compares_only_its_own_files(refusal, tmp_path):
     (tmp_path / "other.json").write_text("{}")
     assert "other.json: not a result" in refusal("bench", "--compare", "other.json", "other.json")
 
@@ -395,11 +395,11 @@ def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
     ],
     ids=str,
 )
-def test_model_of_nobody_is_refused(refusal, arguments, said):
+def test_model_of_an_invalid_subject_is_refused(refusal, arguments, said):
     assert said in refusal("model", *arguments, "-o", "x.sdf")
 
 
-def test_model_in_no_folder_is_refused(refusal):
+def test_model_in_a_missing_folder_is_refused(refusal):
     assert "No such file or directory" in refusal("model", "-o", "none/x.sdf")
 
 

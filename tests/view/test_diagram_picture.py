@@ -67,7 +67,7 @@ def test_a_picture_is_drawn_without_the_systems_graphviz(without_dot, tmp_path):
         draw_diagram(small_diagram(), tmp_path / "sum.pdf")
 
 
-def test_the_same_diagram_is_the_same_picture_though_drake_counts_on(tmp_path):
+def test_the_same_diagram_gives_the_same_picture(tmp_path):
     pictures = []
     for name in ("one.svg", "two.svg"):
         draw_diagram(small_diagram(), tmp_path / name)
@@ -75,12 +75,12 @@ def test_the_same_diagram_is_the_same_picture_though_drake_counts_on(tmp_path):
     assert pictures[0] == pictures[1]
 
 
-def test_numbers_are_given_by_first_appearance_and_words_are_left_alone():
+def test_nodes_are_numbered_by_first_appearance():
     text = "digraph _7 { cluster7diagram s31:y0:e -> s7out:0:w; label=<Lumbar_6 s31x> s31 }"
     assert with_own_numbers(text) == "digraph _1 { cluster1diagram s2:y0:e -> s1out:0:w; label=<Lumbar_6 s31x> s2 }"
 
 
-def test_only_ports_with_a_wire_are_drawn_unless_asked():
+def test_only_connected_ports_are_drawn_by_default():
     text = small_diagram().GetGraphvizString(max_depth=1, options={"split": "I/O"})
     wired = with_wired_ports(text)
     assert len(re.findall(r'PORT="[uy]\d"', text)) > len(re.findall(r'PORT="[uy]\d"', wired)) == 4
@@ -90,7 +90,7 @@ def test_only_ports_with_a_wire_are_drawn_unless_asked():
         assert f'PORT="{port}"' in node[: node.index("</TABLE>")]
 
 
-def test_depth_opens_diagrams(tmp_path):
+def test_depth_expands_diagrams(tmp_path):
     draw_diagram(small_diagram(), tmp_path / "closed.svg", depth=0)
     draw_diagram(small_diagram(), tmp_path / "open.svg", depth=1)
     assert "name=twice" not in words(tmp_path / "closed.svg")

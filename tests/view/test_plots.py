@@ -92,13 +92,13 @@ def test_every_plot_of_a_walk_is_written_under_its_name(make_run):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
 
 
-def test_figures_5_8_to_5_21_of_the_thesis_are_all_there():
+def test_all_of_figures_5_8_to_5_21_exist():
     numbers = [int(name.split("_")[2]) for name in PLOTS if name.startswith("figure_5_")]
     assert numbers == list(range(8, 22))
 
 
 @pytest.mark.parametrize("name", PLOTS)
-def test_a_plot_says_what_it_is_and_in_which_units(make_run, name):
+def test_a_plot_has_a_title_and_units(make_run, name):
     figure = PLOTS[name](make_run())
     title = figure.get_suptitle()
     if name.startswith("figure_"):
@@ -150,7 +150,7 @@ def test_the_first_four_seconds_show_the_desired_angle_too(make_run, name, colum
     np.testing.assert_allclose(shown.get_ydata(), np.degrees(run.signals[column].to_numpy()[first]))
 
 
-def test_the_lateral_threshold_lies_half_a_centimetre_to_both_sides_of_the_foots_line(make_run):
+def test_the_lateral_threshold_lies_half_a_centimeter_to_both_sides_of_the_initial_position(make_run):
     run = make_run()
     (axes,) = PLOTS["figure_5_17_left_foot_y"](run).axes
     levels = sorted(line.get_ydata()[0] for line in axes.get_lines() if line.get_linestyle() == "--")
@@ -208,12 +208,12 @@ def test_a_run_without_support_has_no_plot_of_it(make_run):
     assert write_plots(run, ["support"]) == []
 
 
-def test_a_run_that_ended_before_the_first_step_leaves_out_what_it_cannot_show(make_run):
+def test_a_run_that_ended_before_the_first_step_has_no_plots_of_strides(make_run):
     names = {path.stem for path in write_plots(make_run(duration=0.05))}
     assert names == set(PLOTS) - NEED_STRIDES - NEED_STEADY_WALK
 
 
-def test_one_sample_makes_no_plot(make_run):
+def test_one_sample_gives_no_plot(make_run):
     assert write_plots(make_run(duration=0.0)) == []
 
 
@@ -283,14 +283,14 @@ def test_the_foot_path_of_a_cycle_is_closed_and_passes_through_its_control_point
 
 
 @pytest.mark.parametrize("name", ["figure_4_06_forward_plot", "figure_4_07_backward_plot"])
-def test_the_points_of_a_path_begin_where_the_man_stands(name):
+def test_the_points_of_a_path_begin_at_the_standing_foot(name):
     (axes,) = GAIT_FIGURES[name]().axes
     points = next(line for line in axes.get_lines() if "points" in line.get_label()).get_xydata()
     np.testing.assert_allclose(points[0], (25.0, -5.0))
     assert np.linalg.norm(np.diff(points, axis=0), axis=1).max() <= 1.4 + 1e-9
 
 
-def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_people(make_run):
+def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_human_gait(make_run):
     run = make_run()
     figure = PLOTS["gait_cycle_angles"](run)
     for axes, name in zip(figure.axes, ("hip", "knee", "ankle"), strict=True):
@@ -319,13 +319,13 @@ def test_power_is_torque_times_rate_per_mass(make_run):
 
 
 BASELINES = Path(__file__).parent.parent / "data" / "plots"
-"""Pictures of the plots that were looked at; WRITE_BASELINES=1 pytest tests/run/test_plots.py draws them anew."""
+"""Reviewed pictures of the plots; WRITE_BASELINES=1 pytest tests/view/test_plots.py draws them again."""
 
 IMAGE_DPI = 72
 IMAGE_TOLERANCE = 4.0
 """Greatest rms difference of a plot from its picture, of 255, both blurred: fonts and edges may move by a pixel."""
 
-LOOKED_AT = (
+REVIEWED = (
     "figure_4_02_forward_path",
     "figure_5_08_right_knee_angle",
     "figure_5_17_left_foot_y",
@@ -353,8 +353,8 @@ def rms_difference(one: Image.Image, other: Image.Image) -> float:
     return float(np.sqrt(((first - second) ** 2).mean()))
 
 
-@pytest.mark.parametrize("name", LOOKED_AT)
-def test_a_plot_looks_like_the_picture_that_was_looked_at(make_run, name):
+@pytest.mark.parametrize("name", REVIEWED)
+def test_a_plot_matches_its_reviewed_picture(make_run, name):
     picture = drawn(GAIT_FIGURES[name]() if name in GAIT_FIGURES else PLOTS[name](make_run()))
     baseline = BASELINES / f"{name}.png"
     if os.environ.get("WRITE_BASELINES"):
@@ -364,7 +364,7 @@ def test_a_plot_looks_like_the_picture_that_was_looked_at(make_run, name):
         assert rms_difference(picture, known.convert("RGB")) < IMAGE_TOLERANCE
 
 
-def test_another_curve_is_another_picture(make_run):
+def test_another_curve_does_not_match_the_picture(make_run):
     def late(signals):
         columns = {name: signals[name].to_numpy() for name in signals.column_names}
         columns["RightLegTibiaMotion.angle_rad"] = np.roll(columns["RightLegTibiaMotion.angle_rad"], 10)

@@ -130,11 +130,11 @@ def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements, pa
     }
 
 
-def test_page_carries_its_title_as_text(elements):
+def test_page_has_its_title_as_text(elements):
     assert elements.text["title"].strip() == TITLE
 
 
-def test_page_holds_the_recorded_walker_and_the_view_that_follows_it(animation):
+def test_page_contains_the_recorded_walker_and_the_view_that_follows_it(animation):
     for path in (b"/drake/visualizer/human/Pelvis", b"/drake/visualizer/human/LeftLeg_Tibia"):
         assert path in animation
     # A msgpack string is preceded by its length: the scene itself moves, not only what is in it.
@@ -159,7 +159,7 @@ def test_page_has_one_player(elements):
     assert ("input", "range") in [(tag, attributes.get("type")) for tag, attributes in elements.found]
 
 
-def test_server_knows_only_the_page():
+def test_server_has_only_the_page():
     with served(b"<p>the walk</p>") as root:
         with urllib.request.urlopen(f"{root}/") as answer:
             assert answer.read() == b"<p>the walk</p>"
@@ -230,7 +230,7 @@ def test_replay_opens_the_page_and_ends_at_ctrl_c(run, monkeypatch):
     assert re.search(r"http://127\.0\.0\.1:\d+/", output.getvalue())
 
 
-def test_replay_leaves_the_browser_alone_when_asked_to(run, monkeypatch):
+def test_replay_does_not_open_the_browser_with_no_browser(run, monkeypatch):
     def press_ctrl_c(self, *_):
         raise KeyboardInterrupt
 
@@ -241,13 +241,13 @@ def test_replay_leaves_the_browser_alone_when_asked_to(run, monkeypatch):
     assert opened == []
 
 
-def test_run_without_replay_is_refused_with_a_mend(run):
+def test_run_without_replay_produces_an_error_with_the_fix(run):
     (run / REPLAY).unlink()
     with pytest.raises(ParameterError, match=r"no replay\.html; allowed: .*; walk again without --no-replay"):
         serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
 
 
-def test_folder_without_run_is_refused(tmp_path):
+def test_folder_without_run_produces_an_error(tmp_path):
     with pytest.raises(ParameterError, match="no run"):
         serve_replay(tmp_path, open_browser=False, console=Console(file=io.StringIO()))
 

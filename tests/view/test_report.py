@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from humanwalk.cli.main import app
 from humanwalk.measures.human_likeness import ANGLES
+from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.stored import required_columns
@@ -39,7 +40,9 @@ def make_run(walk, tmp_path):
         zero = np.zeros(signals.num_rows)
         for name in sorted(required_columns(physics=True).difference(signals.column_names)):
             signals = signals.append_column(name, [zero])
-        scenario = load_scenario("thesis", {"description": "A <b>walk</b>"})
+        period = str(signals[TIME][1].as_py())
+        overrides = {"description": "A <b>walk</b>", "recording.signal_period": period}
+        scenario = load_scenario("thesis", overrides)
         return Outcome(scenario, signals, end, wall_time=1.0).write(tmp_path, "walk")
 
     return make
@@ -58,7 +61,7 @@ def test_every_angle_and_measure_has_a_row(make_run):
     assert all(len(row) == len(MEASURE_HEADER) for row in measures)
 
 
-def test_rows_say_value_people_and_source(make_run):
+def test_rows_have_value_human_range_and_source(make_run):
     comparison = compare_run(make_run())
     rows = {row[0]: row[1:] for row in measure_rows(comparison)}
     assert rows["speed [m/s]"][:2] == ("1.30 ± 0.00", "1.28 to 1.43")
@@ -69,7 +72,7 @@ def test_rows_say_value_people_and_source(make_run):
     assert rows["moment, knee extension [N m/kg]"][1:] == ("", "")
 
 
-def test_numbers_for_a_program_are_stride_by_stride(make_run):
+def test_json_is_stride_by_stride(make_run):
     told = to_json(compare_run(make_run()))
     assert told["strides"] == {"right": 7, "left": 7}
     for sides in told["angles"].values():
@@ -80,7 +83,7 @@ def test_numbers_for_a_program_are_stride_by_stride(make_run):
     json.dumps(told, allow_nan=False)
 
 
-def test_angle_that_never_moves_has_no_correlation_and_still_a_report(make_run):
+def test_constant_angle_has_no_correlation(make_run):
     run = make_run()
     knee = "RightLegTibiaMotion.angle_rad"
     still = [np.full(run.signals.num_rows, 0.3)]
@@ -90,7 +93,7 @@ def test_angle_that_never_moves_has_no_correlation_and_still_a_report(make_run):
     assert None not in told["angles"]["knee"]["right"]["rms_deg"]
 
 
-def test_page_stands_by_itself(make_run):
+def test_page_is_self_contained(make_run):
     run = make_run()
     page = write_report(run, compare_run(run)).read_text()
     assert "A &lt;b&gt;walk&lt;/b&gt;" in page
@@ -123,20 +126,20 @@ def test_json_is_all_that_is_printed_and_nothing_is_written(make_run):
 
 
 @pytest.mark.parametrize("end", ["fell", "not a number", "solver failed: no"])
-def test_run_that_did_not_stay_up_is_refused(make_run, end):
+def test_fallen_run_is_refused(make_run, end):
     with pytest.raises(ParameterError, match=f"ended with '{end}' at 8.00 s; allowed"):
         compare_run(make_run(end))
 
 
 @pytest.mark.parametrize("end", ["interrupted", "unfinished"])
-def test_run_that_was_stopped_is_compared_as_far_as_it_went(make_run, end):
+def test_interrupted_run_is_compared_up_to_its_end(make_run, end):
     assert compare_run(make_run(end)).strides["Right"] == 7
 
 
 @pytest.mark.parametrize(
     ("made", "said"), [({"standing": True}, "0 of the right leg"), ({"duration": 1.9}, "strides: ")]
 )
-def test_run_without_strides_is_refused_by_its_name(make_run, made, said):
+def test_run_without_strides_is_refused(make_run, made, said):
     run = make_run(**made)
     with pytest.raises(ParameterError, match=said) as error:
         compare_run(run)
@@ -144,7 +147,7 @@ def test_run_without_strides_is_refused_by_its_name(make_run, made, said):
     assert "\n" not in str(error.value)
 
 
-def test_page_that_cannot_be_written_leaves_the_one_before(make_run, monkeypatch):
+def test_failed_write_keeps_the_previous_page(make_run, monkeypatch):
     run = make_run()
     (run.path / REPORT).write_text("before")
 

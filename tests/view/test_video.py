@@ -21,7 +21,7 @@ from humanwalk.view.video import VideoParameters, camera, find_ffmpeg, parse_siz
         (VideoParameters(frame_rate=32.0, speed=7.0), 69, 14.875),
     ],
 )
-def test_frames_are_evenly_spaced_and_do_not_leave_the_stretch(parameters, count, last):
+def test_frames_are_evenly_spaced_and_stay_in_the_selected_part(parameters, count, last):
     times = parameters.times(15.0)
     assert len(times) == count
     assert times[0] == parameters.begin
@@ -40,19 +40,19 @@ def test_frames_are_evenly_spaced_and_do_not_leave_the_stretch(parameters, count
         ({"view": "top"}, "--view top: unknown; allowed: follow, side, front, orbit"),
     ],
 )
-def test_what_cannot_be_recorded_is_refused_in_one_line(arguments, message):
+def test_invalid_parameters_produce_a_one_line_error(arguments, message):
     with pytest.raises(ParameterError, match=message) as error:
         VideoParameters(**arguments)
     assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(("begin", "end"), [(-1.0, None), (16.0, None), (2.0, 1.0), (0.0, 15.5)])
-def test_a_stretch_outside_the_replay_is_refused(begin, end):
+def test_times_outside_the_replay_are_refused(begin, end):
     with pytest.raises(ParameterError, match=r"--(from|to): .*allowed: .* to 15 s"):
         VideoParameters(begin=begin, end=end).times(15.0)
 
 
-def test_sizes_and_times_are_read_and_nonsense_is_refused():
+def test_sizes_and_times_are_parsed():
     assert parse_size("1280x720") == (1280, 720)
     assert parse_times("1.0,1.5") == [1.0, 1.5]
     for text in ("1280", "1280x", "x720", "12.5x10", "1280X720p"):
@@ -85,7 +85,7 @@ def test_a_run_without_replay_is_refused(run):
 @pytest.mark.parametrize(
     ("module", "need"), [("playwright.sync_api", "playwright"), ("imageio_ffmpeg", "imageio-ffmpeg")]
 )
-def test_without_the_extra_one_is_told_what_to_install(run, monkeypatch, module, need):
+def test_missing_package_produces_an_error_with_the_command(run, monkeypatch, module, need):
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ParameterError, match=rf"{need}: not installed.*pip install -e '\.\[video\]'"):
         if need == "playwright":
@@ -110,7 +110,7 @@ def test_without_any_browser_playwright_looks_for_its_own(monkeypatch):
     assert find_browser() is None
 
 
-def test_a_place_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run, monkeypatch):
+def test_a_folder_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run, monkeypatch):
     def never(*_):
         raise AssertionError("a browser was opened")
 

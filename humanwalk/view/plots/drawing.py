@@ -1,4 +1,4 @@
-"""How every plot looks: size, colors, labels and legend; matplotlib without pyplot, so nothing is global."""
+"""Style of all plots: size, colors, labels and legend; matplotlib without pyplot has no global state."""
 
 import base64
 import io
@@ -25,13 +25,13 @@ DPI = 160
 SIDE = SIDE_COLORS
 """Right is blue, left is orange, as on the body."""
 AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
-"""World x, y, z in plots of one vector: neither of the two sides' colors."""
+"""Colors of x, y, z in W, distinct from those of the two sides."""
 INK = "#202020"
 DESIRED = "#bdbdbd"
 REFERENCE = "#777777"
 STANCE = "#e9edf2"
 PEOPLE, PEOPLE_LINE = "#d9d9d9", "#808080"
-"""Band and mean of people that a run is compared with."""
+"""Band and mean of human gait."""
 
 TITLE_SIZE, LABEL_SIZE, TICK_SIZE = 9.5, 9.0, 8.0
 
@@ -40,10 +40,10 @@ def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1,
     """A figure of column width with rows x columns empty axes.
 
     Args:
-        title: what is shown, with the thesis' figure number where it has one.
-        height: in inches.
-        rows, columns: of axes.
-        subplots: further arguments of `Figure.subplots`, like sharex.
+        title: Title, with the number of the thesis' figure if there is one.
+        height: Height in inches.
+        rows, columns: Number of axes.
+        subplots: Further arguments of `Figure.subplots`, such as sharex.
     """
     figure = Figure(figsize=(COLUMN_WIDTH, height), layout="constrained")
     figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_SIZE)
@@ -57,13 +57,13 @@ def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1,
 
 
 def label(axes: Axes, x: str, y: str) -> None:
-    """Name both axes; an empty text leaves that axis unnamed."""
+    """Label both axes; an empty text is no label."""
     axes.set_xlabel(x, fontsize=LABEL_SIZE)
     axes.set_ylabel(y, fontsize=LABEL_SIZE)
 
 
 def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
-    """Legend in one line above the axes, where it hides no curve."""
+    """Add a legend in one line above the axes, where it hides no curve."""
     entries = list(handles) if handles is not None else axes.get_legend_handles_labels()[0]
     axes.legend(
         handles=entries,
@@ -84,7 +84,7 @@ def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:
 
 
 def level(axes: Axes, y: float, text: str | None = None) -> None:
-    """A dashed horizontal line to compare with; one without a text is a plain thin line, like that of zero."""
+    """Add a dashed horizontal line with a label, or without text a thin solid line, as at zero."""
     style, width = ("--", 0.9) if text else ("-", 0.5)
     axes.axhline(y, color=REFERENCE, linestyle=style, linewidth=width, label=text)
 
@@ -97,7 +97,7 @@ def shade(axes: Axes, x: Array, where: Mask, text: str) -> None:
 
 
 def true_proportions(figure: Figure) -> None:
-    """One meter as long sideways as along, in a figure of one axes."""
+    """Set equal scales for x and y in a figure of one axes."""
     figure.axes[0].set_aspect("equal")
     figure.set_layout_engine("compressed")
 
@@ -113,7 +113,7 @@ def save(figure: Figure, path: Path, dpi: float = DPI) -> Path:
 
 
 def svg_data(figure: Figure, name: str) -> str:
-    """A figure as a data URL, to stand in a page by itself; `name` makes it the same every time."""
+    """A figure as a data URL for a self-contained page; `name` makes the text reproducible."""
     drawn = io.BytesIO()
     _draw(figure, drawn, "svg", name, DPI)
     return f"data:image/svg+xml;base64,{base64.b64encode(drawn.getvalue()).decode()}"
@@ -121,6 +121,6 @@ def svg_data(figure: Figure, name: str) -> str:
 
 def _draw(figure: Figure, target: Path | io.BytesIO, form: str, salt: str, dpi: float) -> None:
     no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
-    # The salt, in place of a random one, makes an SVG the same every time.
+    # A fixed salt instead of a random one makes the SVG reproducible.
     with rc_context({"svg.hashsalt": salt}):
         figure.savefig(target, format=form, dpi=dpi, metadata=no_date)

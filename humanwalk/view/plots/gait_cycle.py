@@ -1,4 +1,4 @@
-"""Joint angles and powers of the legs over a gait cycle, from touchdown to touchdown, with people's beside them."""
+"""Joint angles and powers of the legs over a gait cycle, from touchdown to touchdown, with those of human gait."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ from humanwalk.view.plots.drawing import (
 
 
 def gait_cycle_angles(run: Run) -> Figure | None:
-    """Hip, knee and ankle over the gait cycle [deg]: the run's strides over people's; None if there was no stride.
+    """Hip, knee and ankle over the gait cycle [deg]: the run's strides over human gait; None without a stride.
 
     Lines are means, bands one standard deviation to both sides.
     """
@@ -41,7 +41,7 @@ def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
     for axes, name in zip(figure.axes, names, strict=True):
         angle = ANGLES[name]
         cycle, mean, sd = people(angle.people)
-        axes.fill_between(cycle, mean - sd, mean + sd, color=PEOPLE, linewidth=0, label="people, free speed")
+        axes.fill_between(cycle, mean - sd, mean + sd, color=PEOPLE, linewidth=0, label="human, free speed")
         curve(axes, cycle, mean, color=PEOPLE_LINE, linewidth=0.9, linestyle="--")
         level(axes, 0.0)
         for side in SIDES:
@@ -53,7 +53,7 @@ def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
 
 
 def joint_power(run: Run) -> Figure | None:
-    """Power of hip, knee and ankle per body mass over the gait cycle [W/kg]; None if there was no stride.
+    """Power of hip, knee and ankle per body mass over the gait cycle [W/kg]; None without a stride.
 
     Power is torque times rate of the sagittal joint: positive where the actuator drives, negative where it brakes.
     """
@@ -75,7 +75,7 @@ def _three(title: str) -> Figure:
 
 
 def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
-    """Draw a signal over the strides of a leg in steady walking; False if there was none."""
+    """Draw a signal over the strides of a leg in steady walking; False if there is none."""
     strides = over_strides(
         events_of(run.signals, side, run.scenario.controller.steady_from(run.scenario.subject)), values
     )
@@ -84,7 +84,7 @@ def _mean_and_band(axes: Axes, run: Run, side: Side, values: Array) -> bool:
     mean, sd = strides.mean(axis=0), strides.std(axis=0)
     axes.fill_between(CYCLE, mean - sd, mean + sd, color=SIDE[side], alpha=0.2, linewidth=0)
     text = f"{side.lower()}, {len(strides)} stride{'s' if len(strides) > 1 else ''}"
-    # The walk is nearly symmetric: the right curve is broad enough to be seen behind the left one.
+    # The walk is nearly symmetric: the right curve is wide enough to be visible behind the left one.
     curve(axes, CYCLE, mean, color=SIDE[side], label=text, linewidth=2.2 if side == "Right" else 0.9)
     return True
 

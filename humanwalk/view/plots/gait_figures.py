@@ -1,4 +1,4 @@
-"""Figures 4.2 to 4.7: the thesis' two foot paths as its programs make them, in centimeters."""
+"""Figures 4.2 to 4.7: the two foot paths of the thesis' programs, in centimeters."""
 
 from collections.abc import Callable
 from functools import partial
@@ -31,21 +31,21 @@ from humanwalk.view.plots.drawing import (
 
 STEP_LENGTH_CM, STEP_HEIGHT_CM, OFFSET_CM = 50.0, 20.0, 5.0
 POINT_SPACING_CM = 1.4
-"""Way of 0.01 s at 1.4 m/s (appendices A and B)."""
+"""Path length of 0.01 s at 1.4 m/s (appendices A and B)."""
 
 SMALL_DPI = 120
-"""Resolution: these pictures lie beside the documentation, and should be light."""
+"""Resolution: these pictures are part of the documentation, and should be small."""
 HEIGHT = 3.4
-"""Of a figure in inches: fits a step drawn at true proportions."""
+"""Height of a figure in inches: fits a step at equal scales."""
 
 PATH_SIDE: dict[LegPath, Side] = {"forward": "Right", "backward": "Left"}
-"""The leg that swings first goes forward first: the right one."""
+"""The right leg swings first, and its path is the forward one."""
 START_SEGMENTS: dict[LegPath, int] = {"forward": 2, "backward": 1}
 CYCLE_SEGMENTS: dict[LegPath, int] = {"forward": 13, "backward": 12}
 
 
 def cycle_figure(path: LegPath, number: str) -> Figure:
-    """One closed cycle with its control points, and the triangle that they came from (Eq 4-22)."""
+    """One closed cycle with its control points and the triangle that defines them (Eq 4-22)."""
     points = _control_points(path)
     start = START_SEGMENTS[path]
     cycle = points[start : start + CYCLE_SEGMENTS[path] + 1]
@@ -68,7 +68,7 @@ def cycle_figure(path: LegPath, number: str) -> Figure:
 
 
 def start_figure(path: LegPath, number: str) -> Figure:
-    """The start from standing and the steady cycle in one curve."""
+    """Start from standing and steady cycle in one curve."""
     start = START_SEGMENTS[path]
     figure = new_figure(f"Figure {number}  {path.capitalize()} start and steady cycle in one curve", HEIGHT)
     (axes,) = figure.axes
@@ -81,7 +81,7 @@ def start_figure(path: LegPath, number: str) -> Figure:
 
 
 def resampled_figure(path: LegPath, number: str) -> Figure:
-    """Start and two cycles as points of equal spacing, the walk at constant speed that the thesis means (E16)."""
+    """Start and two cycles as points of equal spacing, the intended walk at constant speed (E16)."""
     spline = _spline(path)
     points = ArcLength(spline).resample(POINT_SPACING_CM)
     title = f"Figure {number}  {path.capitalize()} plot: start and two cycles, a point every 1.4 cm of path"
@@ -110,10 +110,10 @@ GAIT_FIGURES: dict[str, Callable[[], Figure]] = {
 
 
 def write_gait_figures(folder: Path) -> list[Path]:
-    """Write Figures 4.2 to 4.7 as PNG into a folder, which is made if it is not there; returns the files.
+    """Write Figures 4.2 to 4.7 as PNG into a folder, which is created if missing; returns the files.
 
     Raises:
-        ParameterError: a file cannot be written.
+        ParameterError: A file cannot be written.
     """
     make_folder(folder)
     return [save(draw(), folder / f"{name}.png", SMALL_DPI) for name, draw in GAIT_FIGURES.items()]

@@ -1,4 +1,4 @@
-"""What the feet and the ground do to each other at the end of a run."""
+"""Ground reaction forces and center of pressure at the end of a run."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -88,7 +88,7 @@ def _last(run: Run, seconds: float) -> tuple[Array, Mask]:
 
 
 def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
-    """Outline of the sole where it was in the middle of each contact."""
+    """Draw the outline of the sole at the middle of each contact."""
     contact = events_of(run.signals, side).contact & rows
     edges = np.flatnonzero(np.diff(np.concatenate(([0], contact.astype(int), [0]))))
     x, y = (run.signals[f"{side.lower()}_sole.{axis}_m"].to_numpy() for axis in "xy")

@@ -1,4 +1,4 @@
-"""What the assumed balance adds from outside: its force and torque on the pelvis over time."""
+"""Force and torque of the external support (the assumed balance) on the pelvis over time."""
 
 from collections.abc import Mapping
 

@@ -26,7 +26,7 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "joint_torques": joint_torques,
     "tracking_error": tracking_error,
 }
-"""Every plot by name, which is also its file's; a function returns None where the run has nothing to draw."""
+"""Plots by name, which is also the file name; a function returns None if the run has no data for it."""
 
 
 def plot(run: Run, name: str) -> Figure:
@@ -47,15 +47,15 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
     """Write plots of a run into `run.plots`, each file whole or not at all.
 
     Args:
-        run: what is plotted.
-        only: names of plots, or how they begin: "figure_5" is all of chapter 5. None or none: every plot.
-        format: one of `drawing.FORMATS`.
+        run: What is plotted.
+        only: Names of plots, or their beginnings: "figure_5" is all of chapter 5. None or empty: every plot.
+        format: One of `drawing.FORMATS`.
 
     Returns:
-        What was written; a plot for which the run has nothing to draw (no support, no stride yet) is left out.
+        The files; a plot for which the run has no data (no support, no stride yet) is omitted.
 
     Raises:
-        ParameterError: an unknown name or format, a run without physics, or a file that cannot be written.
+        ParameterError: An unknown name or format, a run without physics, or a file that cannot be written.
     """
     if format not in FORMATS:
         raise ParameterError(f"--format {format}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
@@ -79,6 +79,6 @@ def select(only: Sequence[str]) -> list[str]:
     for wanted in only:
         if not wanted or not any(name.startswith(wanted) for name in PLOTS):
             raise ParameterError(
-                f"--only {wanted}: no such plot; allowed: {', '.join(PLOTS)}; give a name or how it begins"
+                f"--only {wanted}: no such plot; allowed: {', '.join(PLOTS)}; give a name or its beginning"
             )
     return [name for name in PLOTS if not only or name.startswith(tuple(only))]
