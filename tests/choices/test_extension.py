@@ -1,0 +1,98 @@
+"""A choice of one's own needs a class and a tag: no other code changes (docs/architecture.md, Extensions)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource
+
+from humanwalk.body.joint_map import JointMap
+from humanwalk.choices import ACTUATIONS, CONTACTS, CONTROLLERS, PdActuation, PointContact, ThesisController
+from humanwalk.choices.controller import Command
+from humanwalk.diagrams.walker import make_walker
+from humanwalk.parameter_file import fields_of
+from humanwalk.quantity import quantity
+from humanwalk.run.recorder import Recorder
+from humanwalk.scenario import Scenario, dump_scenario, parse_scenario
+from humanwalk.systems.signal import Signal
+from humanwalk.terrain import TERRAINS, Plane
+
+
+@dataclass(frozen=True)
+class Plateau(Plane):
+    """Level ground at a height."""
+
+    rise: float = quantity(0.3, "m", 0.0, 1.0)
+    """Its height."""
+
+    def height(self, xy):
+        return super().height(xy) + self.rise
+
+
+@dataclass(frozen=True)
+class Slippery(PointContact):
+    """Point contact on ground that is more slippery than its terrain."""
+
+    def ground_properties(self, friction):
+        return super().ground_properties(0.5 * friction)
+
+
+@dataclass(frozen=True)
+class Statue(ThesisController):
+    """Holds the start posture, and records a number of its own."""
+
+    def add_to(self, world):
+        n = len(world.joints.names)
+        posture = world.add("statue", ConstantVectorSource(np.zeros(2 * n))).get_output_port()
+        answer = world.add("answer", ConstantVectorSource([42.0]))
+        answer.signals = (Signal("answer", answer.get_output_port(), ("statue.answer",)),)
+        return Command(posture)
+
+
+@dataclass(frozen=True)
+class Soft(PdActuation):
+    """PD with a tenth of every gain."""
+
+    def install(self, plant, kp, kd):
+        super().install(plant, 0.1 * kp, 0.1 * kd)
+
+
+@pytest.fixture
+def scenario(monkeypatch):
+    """A scenario of four choices that humanwalk does not ship, out of a file."""
+    for registry, tag, kind in (
+        (TERRAINS, "plateau", Plateau),
+        (CONTACTS, "slippery", Slippery),
+        (CONTROLLERS, "statue", Statue),
+        (ACTUATIONS, "soft", Soft),
+    ):
+        monkeypatch.setitem(registry, tag, kind)
+    return parse_scenario(
+        "terrain: {plateau: {rise: 0.2}}\ncontact: slippery\ncontroller: statue\nactuation: {soft: {law: implicit}}"
+    )
+
+
+def test_a_file_names_them_with_their_own_fields(scenario):
+    assert scenario.terrain == Plateau(rise=0.2)
+    assert (scenario.contact, scenario.controller) == (Slippery(), Statue())
+    assert scenario.actuation == Soft(law="implicit")
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+    assert "terrain.plateau.rise" in dict(fields_of(Scenario))
+
+
+def test_the_body_starts_on_the_terrain(scenario):
+    walker = make_walker(scenario)
+    soles = walker.GetOutputPort("soles").Eval(walker.CreateDefaultContext())
+    np.testing.assert_allclose(soles[[2, 5]], 0.2, atol=1e-3)
+
+
+def test_signals_of_a_new_system_are_recorded(scenario):
+    builder = DiagramBuilder()
+    walker = builder.AddNamedSystem("walker", make_walker(scenario))
+    recorder = Recorder.add_to(builder, walker, JointMap.of(walker.GetSubsystemByName("plant")), 0.004)
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(0.008)
+    table = recorder.table(simulator.get_context())
+    assert table["statue.answer"].to_pylist() == [42.0] * 3
