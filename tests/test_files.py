@@ -1,4 +1,4 @@
-"""Files appear whole or not at all, and the system's reason is told in one line."""
+"""Files are read within bounds and written whole or not at all; errors of the system are one line."""
 
 import errno
 import os
@@ -64,7 +64,7 @@ def test_failing_writer_leaves_the_old_file_and_no_other(tmp_path, error):
 
 
 @pytest.mark.parametrize("step", ["replace", "fsync"])
-def test_full_disk_leaves_the_old_file_and_is_told(tmp_path, monkeypatch, step):
+def test_full_disk_leaves_the_old_file_with_a_one_line_error(tmp_path, monkeypatch, step):
     path = tmp_path / "walk.txt"
     path.write_text("old")
 
@@ -83,7 +83,7 @@ def test_full_disk_leaves_the_old_file_and_is_told(tmp_path, monkeypatch, step):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_really_full_disk_is_told(tmp_path):
+def test_full_device_is_a_one_line_error(tmp_path):
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full on this system")
 
@@ -96,20 +96,20 @@ def test_really_full_disk_is_told(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_missing_folder_is_told(tmp_path):
+def test_missing_folder_is_a_one_line_error(tmp_path):
     with pytest.raises(ParameterError, match="No such file or directory") as raised:
         write_text(tmp_path / "none" / "walk.txt", "x")
     one_line(raised)
 
 
-def test_file_in_place_of_a_folder_is_told(tmp_path):
+def test_file_in_place_of_a_folder_is_a_one_line_error(tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(ParameterError, match="Not a directory") as raised:
         write_text(tmp_path / "file" / "walk.txt", "x")
     one_line(raised)
 
 
-def test_folder_in_place_of_the_file_is_told(tmp_path):
+def test_folder_in_place_of_the_file_is_a_one_line_error(tmp_path):
     (tmp_path / "walk.txt").mkdir()
     with pytest.raises(ParameterError, match="directory") as raised:
         write_text(tmp_path / "walk.txt", "x")
@@ -124,7 +124,7 @@ def test_folder_is_made_with_its_parents_and_may_be_there(tmp_path):
     assert list((tmp_path / "a" / "b").iterdir()) == []
 
 
-def test_folder_in_place_of_which_a_file_is_is_told(tmp_path):
+def test_make_folder_in_place_of_a_file_is_a_one_line_error(tmp_path):
     (tmp_path / "a").write_text("x")
     for path in (tmp_path / "a", tmp_path / "a" / "b"):
         with pytest.raises(ParameterError) as raised:
@@ -132,7 +132,7 @@ def test_folder_in_place_of_which_a_file_is_is_told(tmp_path):
         assert str(path) in one_line(raised)
 
 
-def test_folder_that_takes_no_files_is_told(tmp_path, monkeypatch):
+def test_folder_without_write_permission_is_a_one_line_error(tmp_path, monkeypatch):
     def refuse(*args, **kwargs):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 

@@ -33,11 +33,17 @@ def main() -> None:
             sys.exit(BAD_INPUT)
 
 
+class _OneLine(logging.Formatter):
+    def format(self, record: logging.LogRecord) -> str:
+        """A message on one line; names of files and columns come from others."""
+        return printable(super().format(record), MAX_MESSAGE)
+
+
 @contextmanager
 def _own_log() -> Iterator[None]:
     """Within the block, every message that this package logs is one line on stderr."""
     log, handler = logging.getLogger("humanwalk"), logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("humanwalk: %(message)s"))
+    handler.setFormatter(_OneLine("humanwalk: %(message)s"))
     log.addHandler(handler)
     # pydrake gives the root logger a handler of its own.
     log.propagate = False

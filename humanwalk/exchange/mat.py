@@ -6,7 +6,8 @@ from typing import Any
 from scipy.io import savemat
 
 from humanwalk.files import write_whole
-from humanwalk.run.folder import SCENARIO, Run
+from humanwalk.run.folder import Run
+from humanwalk.scenario import dump_scenario
 
 
 def write_mat(run: Run, folder: Path) -> list[Path]:
@@ -23,7 +24,7 @@ def write_mat(run: Run, folder: Path) -> list[Path]:
             signals.setdefault(thing, {})[quantity] = values
         else:
             signals[name] = values
-    data = {"signals": signals, "scenario": (run.path / SCENARIO).read_text(encoding="utf-8")}
+    data = {"signals": signals, "scenario": dump_scenario(run.scenario)}
     path = folder / "run.mat"
     write_whole(path, lambda beside: savemat(beside, data, long_field_names=True, oned_as="column"))
     return [path]

@@ -2,7 +2,6 @@
 
 import fcntl
 import json
-import math
 import os
 import shutil
 from collections.abc import Iterator
@@ -29,14 +28,14 @@ SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
 REPLAY = "replay.html"
 PLOTS = "plots"
-"""Copies of what the run followed; the recording has its own suffix."""
+"""Names inside a run folder."""
 
 READABLE = "a run folder that you may read; check its permissions"
 
 SIGNALS_BYTES_PER_ROW = 2600
 REPLAY_BYTES_PER_FRAME = 11_000
 OTHER_BYTES = 20_000_000
-"""What a run needs on a disk, with a third to spare: 15 s have 3001 rows in 5.6 MB and 480 frames in 4.9 MB."""
+"""Size of a run on a disk, with a third to spare: 15 s have 3001 rows in 5.6 MB and 480 frames in 4.9 MB."""
 
 
 @dataclass(frozen=True)
@@ -100,14 +99,14 @@ class Run:
 
     @property
     def time(self) -> Array:
-        """When the signals were sampled [s], shape (rows,)."""
+        """Times of the samples [s], shape (rows,)."""
         return self[TIME]
 
     def __getitem__(self, name: str) -> Array:
         """A signal, shape (rows,), by its column's name with or without the unit: run["com.x"].
 
         Raises:
-            ParameterError: there is none of that name.
+            ParameterError: no signal has that name.
         """
         values: Array = self.signals[column_of(self.signals.column_names, name)].to_numpy()
         return values
@@ -175,7 +174,7 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
 
 @contextmanager
 def claimed(folder: Path) -> Iterator[None]:
-    """Within the block, no other run writes into the folder; the system ends the claim with the process.
+    """Within the block, no other run writes into the folder; the claim ends with the process.
 
     Raises:
         ParameterError: another run has claimed it, or has written into it meanwhile.
@@ -202,12 +201,12 @@ def _lock_empty(folder: Path, handle: int) -> bool:
 
 
 def require_room(folder: Path, scenario: Scenario) -> None:
-    """Raise ParameterError unless the disk has room for the run: better now than when it is simulated."""
+    """Raise ParameterError, before the simulation, unless the disk has room for the run."""
     rows = scenario.duration / scenario.recording.signal_period
     if rows + 1 > MAX_ROWS:
         raise ParameterError(
             f"recording.signal_period: {rows:.0f} rows in {scenario.duration:g} s; allowed: up to {MAX_ROWS}; "
-            f"set it to {math.ceil(1e3 * scenario.duration / MAX_ROWS) / 1e3:g} s, or walk shorter"
+            f"set it to {scenario.duration / MAX_ROWS:.3g} s or more, or walk shorter"
         )
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES

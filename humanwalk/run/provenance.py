@@ -1,4 +1,4 @@
-"""What a run came from: enough to repeat it, and to notice that something else was changed since."""
+"""Origin of a run: what is needed to repeat it and to detect later changes."""
 
 import hashlib
 import platform
@@ -21,7 +21,7 @@ MAX_FOLLOWED_BYTES = 200_000_000
 
 
 class Provenance(TypedDict):
-    """What a run came from; hashes are SHA-256."""
+    """Origin of a run; hashes are SHA-256."""
 
     seed: int
     scenario_sha256: str
@@ -42,19 +42,19 @@ def provenance(scenario: Scenario, signals: pa.Table) -> Provenance:
 
 
 def versions() -> dict[str, str]:
-    """Of packages, Python and machine, whatever may change the last bit."""
+    """Versions of packages, Python and machine: whatever can change the last bit."""
     packages = {name: version(name) for name in PACKAGES}
     return packages | {"python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
 
 
 def scenario_hash(scenario: Scenario) -> str:
-    """Of the complete scenario as it is written down, but for where the files are that it follows."""
+    """SHA-256 of the complete scenario as text, without the paths of the files that it reads."""
     controller = replace(scenario.controller, **{field: field for field in file_paths(scenario.controller)})
     return hashlib.sha256(dump_scenario(replace(scenario, controller=controller)).encode()).hexdigest()
 
 
 def signals_hash(signals: pa.Table) -> str:
-    """Of names and bits of all columns, in the order of the names; how the file is compressed does not matter."""
+    """SHA-256 of names and bits of all columns in alphabetical order, independent of file format and compression."""
     digest = hashlib.sha256()
     for name in sorted(signals.column_names):
         digest.update(name.encode() + b"\0")
@@ -63,7 +63,7 @@ def signals_hash(signals: pa.Table) -> str:
 
 
 def file_hash(path: str) -> str | None:
-    """Of a file's bytes, or None if there is no path or it cannot be read any more."""
+    """SHA-256 of a file's bytes; None without a path, or if it cannot be read."""
     try:
         return hashlib.sha256(read_regular(Path(path), MAX_FOLLOWED_BYTES)).hexdigest() if path else None
     except ParameterError:

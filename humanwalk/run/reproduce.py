@@ -1,4 +1,4 @@
-"""Simulates a run again and says whether the same came out."""
+"""Re-runs a run and checks that the results match exactly, or within a tolerance."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -13,20 +13,20 @@ from humanwalk.run.provenance import Provenance, file_hash, scenario_hash, versi
 from humanwalk.run.simulate import simulate
 
 TOLERANCE = 0.01
-"""Measures agree if they differ by no more than this share, or by 1e-3 of their unit."""
 SMALL = 1e-3
+"""Measures match if they differ by no more than TOLERANCE of their value, or by SMALL in their unit."""
 
 NOT_OF_THE_WALK = ("wall_time_s", "realtime_factor", "versions", "scenario", "description")
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of repeating a run.
+    """Result of a re-run.
 
     Attributes:
-        bits_agree: every number of every signal is the same.
-        measures_agree: every measure is the same within TOLERANCE.
-        notes: one line each: what was changed since the run, and what differs.
+        bits_agree: all signals match exactly.
+        measures_agree: all measures match within TOLERANCE.
+        notes: what has changed since the run, and what differs, one line each.
     """
 
     bits_agree: bool
@@ -43,10 +43,14 @@ class Reproduction:
 
 
 def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> Reproduction:
-    """Repeat a run from the scenario in its folder; one that was interrupted, up to where it was.
+    """Re-run the scenario of a run folder; an interrupted run is repeated up to its end.
+
+    Args:
+        run: what is repeated.
+        on_progress: called with the simulated time [s].
 
     Raises:
-        ParameterError: the run's scenario cannot be simulated any more, or its recording is gone.
+        ParameterError: the scenario cannot be simulated, or its recording is gone.
     """
     scenario, then = run.scenario, run.summary["provenance"]
     notes = list(_changes(run, then))
@@ -84,14 +88,14 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
 
 
 def _end(run: Run, end: str) -> str:
-    # Up to where a person stopped it, a run that goes on is the same.
+    # The repetition of an interrupted run completes its shorter duration.
     return "interrupted" if run.summary["end"] == "interrupted" and end == "completed" else end
 
 
 def _changes(run: Run, then: Provenance) -> Iterator[str]:
-    """What is not as it was when the run was made."""
+    """What has changed since the run."""
     if then["scenario_sha256"] != scenario_hash(run.scenario):
-        yield "scenario.yaml was changed since the run, or has fields that this version reads otherwise"
+        yield "scenario.yaml was changed since the run, or this version reads its fields differently"
     for field, path in file_paths(run.scenario.controller).items():
         if _followed_hash(path) != then["files_sha256"].get(field):
             yield f"{path} was changed since the run"

@@ -30,7 +30,7 @@ class Prepared:
     """A simulation that has not begun.
 
     Attributes:
-        simulator: of a root diagram with the walker in it, not initialised.
+        simulator: of a root diagram with the walker in it, not initialized.
         walker: the scenario's diagram.
         plant: the plant in it; None where a recording is shown without physics.
         recorder: its log sinks; None where nothing is recorded.
@@ -56,7 +56,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
         record: whether signals are recorded.
 
     Raises:
-        ParameterError: the scenario cannot be simulated, with a mend.
+        ParameterError: the scenario cannot be simulated.
     """
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_diagram(scenario, visuals=meshcat is not None))
@@ -108,10 +108,10 @@ def simulate(
         meshcat: shows and records the motion; the caller publishes the recording.
         on_progress: called with the simulated time [s] every 10 ms of it.
         realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
-        on_checkpoint: called with what there is so far every `checkpoint_period` seconds on the clock.
+        on_checkpoint: called with the outcome so far every `checkpoint_period` seconds of wall-clock time.
 
     Raises:
-        ParameterError: the scenario cannot be simulated, with a mend, or failed before there was anything to record.
+        ParameterError: the scenario cannot be simulated, or failed before there was anything to record.
     """
     prepared = prepare(scenario, meshcat)
     simulator, recorder = prepared.simulator, prepared.recorder

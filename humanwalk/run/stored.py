@@ -1,4 +1,4 @@
-"""Reads signals and summary of a run folder that somebody else may have made: checked, and within bounded memory."""
+"""Signals and summary of a run folder from others: checked, and read within bounded memory."""
 
 import re
 from pathlib import Path
@@ -17,8 +17,8 @@ from humanwalk.run.provenance import Provenance, signals_hash
 from humanwalk.run.schema import read_json
 from humanwalk.scenario import Scenario
 
-MAX_ROWS = 400_000
-"""Longest record [rows]: 33 minutes at the default signal period, 1 GB of numbers."""
+MAX_ROWS = 200_000
+"""Longest record [rows]: 16 minutes at the default signal period, 0.5 GB of numbers."""
 
 MAX_COLUMNS = 1000
 """A record has some 320."""
@@ -34,7 +34,7 @@ MAX_MAGNITUDE = 1e9
 """Largest value of a signal in SI units; beyond it the state has run away, and the record ends."""
 
 MIN_QUATERNION = 1e-3
-"""Least norm of an orientation; a recorded one has 1."""
+"""Smallest norm of an orientation; a recorded one has 1."""
 
 
 class RunSummary(Summary):

@@ -14,7 +14,7 @@ ROWS = 81
 
 def made_up_signals(columns) -> pa.Table:
     """Every column a wave of its own; a pelvis that turns; a right foot that lands twice, a left one never."""
-    time = 0.005 * np.arange(ROWS)
+    time = 0.004 * np.arange(ROWS)
     names = columns
     data = {name: 0.3 + 0.2 * np.sin(3 * time + i) for i, name in enumerate(names)}
     turns = Rotation.from_euler("zyx", np.column_stack((2 * time, 0.3 * time, -0.2 * time)))

@@ -1,4 +1,4 @@
-"""Gait measures of made-up walks whose step, stride and work are known."""
+"""Gait measures of constructed walks whose step, stride and work are known."""
 
 import json
 
@@ -54,7 +54,7 @@ walks = st.fixed_dictionaries(
 
 
 @given(walks)
-def test_symmetric_walk_is_measured_as_it_was_made(made):
+def test_measures_of_a_symmetric_walk_are_those_of_its_construction(made):
     measures = gait_measures(walk(**made), 0.0)
     assert measures["stride_time_s"] == both(made["stride"])
     assert measures["stride_length_m"] == both(made["length"])
@@ -68,7 +68,7 @@ def test_symmetric_walk_is_measured_as_it_was_made(made):
     assert measures["stride_speed_m_s"] == pytest.approx(made["length"] / made["stride"], rel=0.02)
 
 
-def test_limp_makes_steps_differ_but_not_strides():
+def test_steps_of_a_limp_differ_and_strides_do_not():
     measures = gait_measures(walk(lag=0.4), 0.0)
     assert measures["stride_time_s"] == both(1.0)
     # The left foot lands 0.4 of a stride after the right one, and 0.4 of a stride length in front of it.
@@ -93,7 +93,7 @@ def test_stride_without_toe_off_has_no_stance_share():
     assert stance_shares(events_of(signals, "Right")).size == 0
 
 
-def test_excursion_of_the_centre_of_pressure_is_per_stance():
+def test_excursion_of_the_center_of_pressure_is_per_stance():
     measures = gait_measures(walk(), 0.0)
     assert measures["cop_excursion_m"]["x"] == both(0.25)
     assert measures["cop_excursion_m"]["y"] == {"right": 0.0, "left": 0.0}

@@ -1,4 +1,4 @@
-"""Measures of made-up signals whose values are known."""
+"""Measures of constructed signals whose values are known."""
 
 import json
 
@@ -32,7 +32,7 @@ def down(time, lag):
 
 
 def walk_of(columns, duration=5.0, **changes) -> pa.Table:
-    """Zeros everywhere but for feet that come down and a centre of mass that advances."""
+    """Zeros everywhere but for feet that come down and a center of mass that advances."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
     data = {name: np.zeros_like(time) for name in columns}
     data["com.x_m"] = SPEED * time
@@ -53,7 +53,7 @@ def summary_of(signals, end="completed", overrides=None):
 # The whole.
 
 
-def test_summary_has_the_keys_that_are_promised(columns, joints):
+def test_summary_has_the_documented_keys(columns, joints):
     summary = summary_of(walk_of(columns))
     assert {
         "scenario",
@@ -150,12 +150,12 @@ def test_run_that_ended_in_no_number_is_still_strict_json(columns, joints):
 
 
 @pytest.mark.parametrize("end", ["interrupted", "not a number", "solver failed: x"])
-def test_run_that_ended_otherwise_did_not_fall(columns, end):
+def test_run_that_ended_for_another_reason_did_not_fall(columns, end):
     summary = summary_of(walk_of(columns), end=end)
     assert (summary["survived"], summary["fall_time_s"], summary["end"]) == (False, None, end)
 
 
-def test_unsupported_run_says_so(columns):
+def test_run_without_support_is_marked(columns):
     signals = walk_of(columns)
     signals = signals.drop_columns([name for name in signals.column_names if name.startswith("support.")])
     summary = summary_of(signals, overrides={"controller.thesis.balance.support.enabled": "false"})

@@ -50,13 +50,13 @@ def walked(tmp_path_factory):
     lab = tmp_path_factory.mktemp("lab")
     recording = write_mot(lab / "Trial 3.MOT", bend())
     (lab / "lab.yaml").write_text("hold: {Head_Motion: 0.05}\n")
-    told = file_hash(str(recording)), file_hash(str(lab / "lab.yaml"))
+    hashes = file_hash(str(recording)), file_hash(str(lab / "lab.yaml"))
     files = ["--follow", str(recording), "--mapping", str(lab / "lab.yaml"), "-o", str(lab / "run")]
     result = CliRunner().invoke(app, ["walk", *files, "--no-replay", "--no-plots"])
     assert result.exit_code == 0, result.output
     recording.unlink()
     (lab / "lab.yaml").unlink()
-    return lab / "run", told
+    return lab / "run", hashes
 
 
 @pytest.fixture
@@ -66,10 +66,10 @@ def run(walked, tmp_path):
 
 
 def test_recording_and_mapping_are_kept_with_their_hashes(run, walked):
-    told = run.summary["provenance"]
-    assert (told["files_sha256"]["angles"], told["files_sha256"]["mapping"]) == walked[1]
-    assert file_hash(str(run.path / "angles.mot")) == told["files_sha256"]["angles"]
-    assert file_hash(str(run.path / "mapping.yaml")) == told["files_sha256"]["mapping"]
+    hashes = run.summary["provenance"]
+    assert (hashes["files_sha256"]["angles"], hashes["files_sha256"]["mapping"]) == walked[1]
+    assert file_hash(str(run.path / "angles.mot")) == hashes["files_sha256"]["angles"]
+    assert file_hash(str(run.path / "mapping.yaml")) == hashes["files_sha256"]["mapping"]
     assert run.scenario.controller.angles == str(run.path / "angles.mot")
     assert {entry.name for entry in run.path.iterdir()} == {
         "scenario.yaml",
@@ -101,13 +101,13 @@ def test_copy_that_was_changed_is_noted(run, name):
     assert [note for note in reproduce(run).notes if note.endswith(f"{name} was changed since the run")]
 
 
-def test_copy_that_is_gone_is_said(run):
+def test_missing_copy_is_a_one_line_error(run):
     (run.path / "angles.mot").unlink()
     with pytest.raises(ParameterError, match=r"angles\.mot is gone"):
         reproduce(Run.open(run.path))
 
 
-def test_hash_of_a_scenario_does_not_know_where_its_files_are(tmp_path):
+def test_hash_of_a_scenario_is_independent_of_the_paths_of_its_files(tmp_path):
     here, there = (load_scenario("thesis", following(f"{folder}/t.mot")) for folder in ("a", "b"))
     assert scenario_hash(here) == scenario_hash(there)
     assert scenario_hash(here) != scenario_hash(load_scenario("thesis", following("a/t.mot", "ease_in: 0.5")))
@@ -150,7 +150,7 @@ def kinematic(tmp_path_factory):
     return Run.open(folder / "run"), result.stderr
 
 
-def test_kinematic_run_says_so_and_has_a_replay_and_no_plots(kinematic):
+def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic):
     run, printed = kinematic
     assert "no physics" in printed
     assert {entry.name for entry in run.path.iterdir()} == {
@@ -212,7 +212,7 @@ def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
         ({"controller.recorded.angles": "t.mot"}, "controller is 'thesis'"),
     ],
 )
-def test_what_cannot_be_followed_is_refused(overrides, said):
+def test_invalid_recorded_controller_is_refused(overrides, said):
     with pytest.raises(ParameterError, match=said):
         load_scenario("thesis", overrides)
 
@@ -226,7 +226,7 @@ def test_kinematic_without_a_recording_is_refused(tmp_path):
 # Angles beyond a joint's range.
 
 
-def test_angle_beyond_its_range_is_moved_and_told_in_a_line(tmp_path, caplog, joints):
+def test_angle_beyond_its_range_is_clamped_with_a_one_line_warning(tmp_path, caplog, joints):
     columns = bend() | {"knee_angle_r": np.full_like(TIME, -3.0), "Head_Motion": np.full_like(TIME, 1.0)}
     scenario = load_scenario("thesis", following(write_mot(tmp_path / "t.mot", columns)))
     with caplog.at_level(logging.WARNING):

@@ -1,4 +1,4 @@
-"""Run folders that somebody else made, by accident or on purpose: each is read or refused in one printable line."""
+"""Damaged and malicious run folders: each is read, or refused in one printable line."""
 
 import json
 import os
@@ -88,7 +88,7 @@ def test_run_as_it_was_written_is_read(folder):
     ],
     ids=lambda content: repr(content[:8]),
 )
-def test_what_is_no_summary_is_refused(folder, content):
+def test_invalid_summary_is_refused(folder, content):
     (folder / SUMMARY).write_bytes(content)
     assert SUMMARY in refusal(read, folder)
 
@@ -135,7 +135,7 @@ def test_field_and_joint_that_are_unknown_are_refused_without_their_control_char
 
 
 def rewrite(folder, change):
-    """Change the signals and state their hash, as somebody would who wants them to be read."""
+    """Change the signals and update their hash, as an attacker would."""
     table = change(pq.read_table(folder / SIGNALS))
     pq.write_table(table, folder / SIGNALS)
     summary = json.loads((folder / SUMMARY).read_text())
@@ -190,12 +190,12 @@ KNEE = "RightLegTibiaMotion.angle_rad"
         (lambda table: replaced(table, TIME, np.zeros(table.num_rows)), "not a multiple"),
     ],
 )
-def test_what_is_no_record_is_refused(folder, change, said):
+def test_invalid_record_is_refused(folder, change, said):
     rewrite(folder, change)
     assert said in refusal(read, folder)
 
 
-def test_orientation_that_is_none_is_refused(folder):
+def test_zero_quaternion_is_refused(folder):
     def zero(table):
         for axis in "wxyz":
             table = replaced(table, f"pelvis.quaternion_{axis}", np.zeros(table.num_rows))
@@ -220,7 +220,7 @@ def test_record_that_was_changed_is_refused(folder):
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"PAR1PAR1", b"not Parquet", b"PAR1" + b"\xff" * 100 + b"PAR1"])
-def test_what_is_no_parquet_file_is_refused(folder, content):
+def test_invalid_parquet_file_is_refused(folder, content):
     (folder / SIGNALS).write_bytes(content)
     assert "not a Parquet file" in refusal(read, folder)
 
@@ -267,7 +267,7 @@ def test_link_out_of_the_folder_is_refused(folder, tmp_path, name):
 
 @pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
 @pytest.mark.parametrize("kind", ["fifo", "folder", "device"])
-def test_what_is_no_regular_file_is_refused_at_once(folder, name, kind):
+def test_device_or_pipe_or_folder_is_refused_without_waiting(folder, name, kind):
     (folder / name).unlink()
     if kind == "fifo":
         os.mkfifo(folder / name)
@@ -305,7 +305,7 @@ def test_replay_is_read_from_the_folder_only(folder, tmp_path):
     assert "leads out of" in refusal(lambda: Run.open(folder).replay)
 
 
-# Values that are allowed and make no sense.
+# Values that are allowed and absurd.
 
 
 @pytest.fixture

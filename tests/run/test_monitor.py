@@ -51,7 +51,7 @@ def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant):
     assert status.reason() == status.ReturnReason.kReachedTerminationCondition
 
 
-def test_height_is_measured_from_the_start_and_not_from_the_standing_body(falling_plant):
+def test_fall_is_relative_to_the_initial_height(falling_plant):
     monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 2.0))
     assert monitor(context_at(falling_plant, 1.25, 0.1)).severity() == EventStatus.Severity.kSucceeded
@@ -59,7 +59,7 @@ def test_height_is_measured_from_the_start_and_not_from_the_standing_body(fallin
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_number_that_is_none_ends_the_simulation(falling_plant, value):
+def test_value_that_is_not_finite_ends_the_simulation(falling_plant, value):
     monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 1.0))
     status = monitor(context_at(falling_plant, value, 0.1))
@@ -67,7 +67,7 @@ def test_number_that_is_none_ends_the_simulation(falling_plant, value):
     assert monitor.reason == "not a number"
 
 
-def test_progress_is_told_at_every_look_and_no_more_often(falling_plant):
+def test_progress_is_reported_at_every_check(falling_plant):
     times = []
     monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
@@ -78,7 +78,7 @@ def test_progress_is_told_at_every_look_and_no_more_often(falling_plant):
     assert monitor.reason == ""
 
 
-def test_it_advances_a_simulator_to_its_time_or_to_the_fall(falling_plant):
+def test_advance_ends_at_its_time_or_at_the_fall(falling_plant):
     times = []
     monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
@@ -94,13 +94,13 @@ def test_it_advances_a_simulator_to_its_time_or_to_the_fall(falling_plant):
     assert simulator.get_context().get_time() < 1.0
 
 
-def test_looking_adds_no_steps(falling_plant):
-    """At the systems' own times to the last bit: another time, however near, would be another step."""
+def test_checks_add_no_steps(falling_plant):
+    """Checks are exactly at the systems' own times; any other time would be another step."""
     counts = []
-    for looks in (False, True):
+    for checks in (False, True):
         simulator = Simulator(falling_plant, context_at(falling_plant, 2.0))
         simulator.Initialize()
-        if looks:
+        if checks:
             Monitor(falling_plant, LEVEL).advance(simulator, 0.3)
         else:
             simulator.AdvanceTo(0.3)
@@ -182,7 +182,7 @@ def test_simulation_in_another_thread_leaves_the_signals_alone(falling_plant, ha
     assert seen == [signal.getsignal(signal.SIGINT)]
 
 
-def test_without_a_plant_nothing_falls_and_ctrl_c_still_ends(falling_plant):
+def test_without_a_plant_nothing_falls_and_an_interrupt_still_ends(falling_plant):
     monitor = Monitor(ConstantVectorSource([0.0]), LEVEL)
     assert monitor(context_at(falling_plant, 0.01)).severity() == EventStatus.Severity.kSucceeded
     monitor.interrupted = True

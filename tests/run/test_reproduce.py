@@ -1,4 +1,4 @@
-"""A run says what it came from, and repeating it says whether the same came out."""
+"""A run states its origin; a re-run states whether the results match."""
 
 import json
 import shutil
@@ -44,36 +44,36 @@ def change_signal(run, name, factor):
     return change_summary(run, lambda summary: summary["provenance"].update(signals_sha256=signals_hash(changed)))
 
 
-def test_run_says_what_it_came_from(made):
-    told = made.summary["provenance"]
-    assert told["seed"] == 5
-    assert told["scenario_sha256"] == scenario_hash(made.scenario)
-    assert told["signals_sha256"] == signals_hash(made.signals)
-    assert told["versions"] == versions()
-    assert {"humanwalk", "drake", "numpy", "python", "machine"} == set(told["versions"])
-    assert json.loads(made.signals.schema.metadata[b"humanwalk"])["scenario_sha256"] == told["scenario_sha256"]
+def test_run_states_its_origin(made):
+    origin = made.summary["provenance"]
+    assert origin["seed"] == 5
+    assert origin["scenario_sha256"] == scenario_hash(made.scenario)
+    assert origin["signals_sha256"] == signals_hash(made.signals)
+    assert origin["versions"] == versions()
+    assert {"humanwalk", "drake", "numpy", "python", "machine"} == set(origin["versions"])
+    assert json.loads(made.signals.schema.metadata[b"humanwalk"])["scenario_sha256"] == origin["scenario_sha256"]
 
 
-def test_hash_of_signals_sees_a_bit_a_name_and_nothing_else():
+def test_hash_of_signals_depends_on_bits_and_names_only():
     table = pa.table({"a": [1.0, 2.0], "b": [3.0, 4.0]})
     assert signals_hash(table) == signals_hash(table.select(["b", "a"]))
     assert signals_hash(table) != signals_hash(table.rename_columns(["a", "c"]))
     assert signals_hash(table) != signals_hash(pa.table({"a": [1.0, np.nextafter(2.0, 3)], "b": [3.0, 4.0]}))
 
 
-def test_repeated_run_has_the_same_bits(run):
+def test_results_of_a_rerun_match_exactly(run):
     result = reproduce(run)
     assert (result.bits_agree, result.measures_agree, result.notes) == (True, True, ())
 
 
-def test_interrupted_run_is_repeated_as_far_as_it_went(run):
+def test_interrupted_run_is_repeated_up_to_its_end(run):
     stopped = change_summary(run, lambda summary: summary.update(end="interrupted"))
     text = (run.path / SCENARIO).read_text()
     (run.path / SCENARIO).write_text(text.replace("duration: 0.1", "duration: 60.0"))
     assert reproduce(Run.open(stopped.path)).bits_agree
 
 
-def test_other_bits_with_the_same_measures_are_told_apart(run):
+def test_other_bits_with_the_same_measures_are_distinguished(run):
     result = reproduce(change_signal(run, "Head_Motion.torque_N_m", 1 + 1e-12))
     assert not result.bits_agree
     assert result.measures_agree
@@ -88,7 +88,7 @@ def test_other_measures_are_named(run):
     assert result.verdict == "other measures"
 
 
-def test_what_was_changed_since_is_noted(run):
+def test_later_changes_are_noted(run):
     changed = change_summary(
         run,
         lambda summary: summary["provenance"].update(
@@ -100,7 +100,7 @@ def test_what_was_changed_since_is_noted(run):
     assert "was 1.0" in notes
 
 
-def test_command_says_the_verdict_and_fails_if_it_differs(run):
+def test_command_prints_the_verdict_and_fails_if_results_differ(run):
     result = CliRunner().invoke(app, ["reproduce", str(run.path)])
     assert result.exit_code == 0, result.output
     assert "the same bits in every signal" in result.output
@@ -108,7 +108,7 @@ def test_command_says_the_verdict_and_fails_if_it_differs(run):
     assert CliRunner().invoke(app, ["reproduce", str(run.path)]).exit_code == 1
 
 
-def test_run_with_signals_of_another_version_is_told_apart(run):
+def test_run_with_signals_of_another_version_does_not_match(run):
     table = pq.read_table(run.path / SIGNALS)
     other = table.rename_columns([name.replace("support.force_x", "support.pull_x") for name in table.column_names])
     pq.write_table(other, run.path / SIGNALS)
