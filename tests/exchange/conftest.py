@@ -10,11 +10,13 @@ from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
 ROWS = 81
+PERIOD = 0.005
+PERIODS = {"recording.signal_period": str(PERIOD), "simulation.time_step": "0.001"}
 
 
 def made_up_signals(columns) -> pa.Table:
     """Every column a wave of its own; a pelvis that turns; a right foot that lands twice, a left one never."""
-    time = 0.004 * np.arange(ROWS)
+    time = PERIOD * np.arange(ROWS)
     names = columns
     data = {name: 0.3 + 0.2 * np.sin(3 * time + i) for i, name in enumerate(names)}
     turns = Rotation.from_euler("zyx", np.column_stack((2 * time, 0.3 * time, -0.2 * time)))
@@ -40,5 +42,5 @@ def signals(columns):
 
 @pytest.fixture(scope="session")
 def run(signals, tmp_path_factory):
-    scenario = load_scenario("thesis", {"subject.stature": "1.68", "subject.mass": "61"})
+    scenario = load_scenario("thesis", {"subject.stature": "1.68", "subject.mass": "61", **PERIODS})
     return Outcome(scenario, signals, "completed", 1.0).write(tmp_path_factory.mktemp("run"), "made up")
