@@ -1,15 +1,18 @@
 """What many tests look at: the reference human, as data and as a plant for kinematics."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from pydrake.multibody.plant import MultibodyPlant
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS, PELVIS, other_side
 from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import LegKinematics
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.gait.foot_cycle import FootPathParameters
@@ -17,23 +20,25 @@ from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.measures.human_likeness import ANGLES, people
 from humanwalk.measures.signals import TIME
+from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.recorder import recorded_signals
 from humanwalk.scenario import load_scenario
+from humanwalk.sides import Side
 
 PERIOD = 0.005
 WEIGHT = 70.0 * GRAVITY
 DUTY, STRIDE, LENGTH, WIDTH = 0.6, 1.0, 1.3, 0.12
 
 
-def of_people(name, phase):
+def of_people(name: str, phase: Any) -> Array:
     """People's mean of an angle at shares of the gait cycle [deg]."""
     cycle, mean, _ = people(ANGLES[name].people)
     # The end of the cycle meets its beginning.
     return np.interp(100.0 * (phase % 1.0), cycle, mean + cycle / 100.0 * (mean[0] - mean[-1]))
 
 
-def hump_force(share, first, dip, second):
+def hump_force(share: Array, first: float, dip: float, second: float) -> Array:
     """Vertical force over the share of a stance [body weights]: up, down, up and down, by half cosines.
 
     It lands and lifts at once, so that the stance is as long as it was made.
@@ -44,7 +49,13 @@ def hump_force(share, first, dip, second):
     return low + (high - low) * (1 - np.cos(np.pi * (4 * share - piece))) / 2
 
 
-def make_walk(duration=8.0, heading=0.0, standing=False, humps=(1.1, 0.8, 1.1), **more):
+def make_walk(
+    duration: float = 8.0,
+    heading: float = 0.0,
+    standing: bool = False,
+    humps: tuple[float, float, float] = (1.1, 0.8, 1.1),
+    **more: Any,
+) -> pa.Table:
     """A walk in which every angle is people's mean; the left leg is half a stride late; the pelvis is the right's."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
     data = {TIME: time}
@@ -75,29 +86,29 @@ def make_walk(duration=8.0, heading=0.0, standing=False, humps=(1.1, 0.8, 1.1), 
 
 
 @pytest.fixture(scope="session")
-def plant():
+def plant() -> MultibodyPlant:
     """The finalised reference human; it holds no state, tests make contexts of their own."""
     return kinematics_plant(Subject())
 
 
 @pytest.fixture(scope="session")
-def skeleton():
+def skeleton() -> Skeleton:
     return Subject().skeleton
 
 
 @pytest.fixture(scope="session")
-def joints(plant):
+def joints(plant: MultibodyPlant) -> JointMap:
     return JointMap.of(plant)
 
 
 @pytest.fixture(scope="session")
-def legs(plant):
+def legs(plant: MultibodyPlant) -> dict[Side, LegKinematics]:
     """The chain from pelvis to sole of each leg."""
     return {side: LegKinematics(plant, PELVIS, leg.sole, leg.chain) for side, leg in LEGS.items()}
 
 
 @pytest.fixture(scope="session")
-def gait(skeleton):
+def gait(skeleton: Skeleton) -> WalkingGait:
     """The thesis' walk: L 0.5 m, H 0.2 m, offset 5 cm, 1.4 m/s."""
     return WalkingGait(FootPathParameters(), skeleton.hip_half_width, SpeedRamp(1.4, 0.365))
 
@@ -111,12 +122,12 @@ class Footstep(NamedTuple):
     lift_off: float
 
 
-def footsteps_of(gait, until):
+def footsteps_of(gait: WalkingGait, until: float) -> list[Footstep]:
     """The stances of a `WalkingGait` that begin before a time [s], those of standing first: an independent oracle."""
     p, time = gait.parameters, gait.ramp.time_at
     swing, stand = gait.first_swing, other_side(gait.first_swing)
 
-    def at(x, side):
+    def at(x: float, side: Side) -> Array:
         return np.array([x, gait.hip_half_width if side == "Left" else -gait.hip_half_width, 0.0])
 
     steps = [
@@ -132,19 +143,19 @@ def footsteps_of(gait, until):
 
 
 @pytest.fixture(scope="session")
-def footsteps():
+def footsteps() -> Callable[..., Any]:
     """The stances of a gait, see `footsteps_of`."""
     return footsteps_of
 
 
 @pytest.fixture(scope="session")
-def walk():
+def walk() -> Callable[..., Any]:
     """Makes the signals of a walk that moves as people do, see `make_walk`."""
     return make_walk
 
 
 @pytest.fixture(scope="session")
-def columns(joints):
+def columns(joints: JointMap) -> tuple[str, ...]:
     """Every column that the walkers of the scenarios thesis and stand record, once."""
     walkers = [make_walker(load_scenario(name)) for name in ("thesis", "stand")]
     names = (column for walker in walkers for signal in recorded_signals(walker, joints) for column in signal.columns)

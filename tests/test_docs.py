@@ -3,7 +3,9 @@
 import dataclasses
 import re
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -24,23 +26,23 @@ def blocks(page: Path, language: str) -> list[str]:
 
 
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
-def test_the_python_of_a_how_to_runs(page):
+def test_the_python_of_a_how_to_runs(page: Any) -> None:
     for code in blocks(page, "python"):
         exec(compile(code, page.name, "exec"), {"__name__": page.stem})
 
 
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
-def test_the_scenarios_of_a_how_to_are_valid(page):
+def test_the_scenarios_of_a_how_to_are_valid(page: Any) -> None:
     for text in blocks(page, "yaml"):
         parse_scenario(text)
 
 
-def test_there_is_code_to_run():
+def test_there_is_code_to_run() -> None:
     assert sum(len(blocks(page, "python")) for page in HOW_TO) >= 3
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())
-def test_the_block_diagram_of_every_scenario_is_in_the_book(name):
+def test_the_block_diagram_of_every_scenario_is_in_the_book(name: str) -> None:
     scenario = load_scenario(name)
     graph = make_diagram(scenario).GetGraphvizString(max_depth=1, options={"split": "I/O"})
     picture = DOCS / "images" / f"diagram_{tag_of(CONTROLLERS, scenario.controller)}.svg"
@@ -52,7 +54,7 @@ def test_the_block_diagram_of_every_scenario_is_in_the_book(name):
     assert drawn.count('class="edge"') == graph.count(" -> ") - bool(scenario.pushes.given)
 
 
-def gains(parameters, path=""):
+def gains(parameters: Any, path: str = "") -> Iterator[Any]:
     """Name, default and unit of every number, a task's numbers together, as docs/balance.md writes them."""
     for field in dataclasses.fields(parameters):
         value, name = getattr(parameters, field.name), f"{path}{field.name}"
@@ -66,31 +68,31 @@ def gains(parameters, path=""):
             yield from gains(value, f"{name}.")
 
 
-def test_the_table_of_gains_is_the_code():
+def test_the_table_of_gains_is_the_code() -> None:
     page = (DOCS / "balance.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `([a-z_.]+)` \| ([^|]+?) \| ([^|]*?) ?\| [^|]+ \|$", page, re.MULTILINE)
     assert rows == list(gains(BalancedController()))
 
 
-def test_the_moving_picture_is_light_enough_for_a_first_screen():
+def test_the_moving_picture_is_light_enough_for_a_first_screen() -> None:
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
 @pytest.mark.parametrize("name", ["performance", "balance", "contact"])
-def test_the_tables_of_a_page_are_those_of_the_results(name):
+def test_the_tables_of_a_page_are_those_of_the_results(name: str) -> None:
     page = DOCS / f"{name}.md"
     filled = runpy.run_path(str(DOCS.parent / "benchmarks" / "pages.py"))["filled"]
     assert filled(page) == page.read_text(encoding="utf-8"), "run benchmarks/pages.py"
 
 
-def test_the_reference_has_every_package():
+def test_the_reference_has_every_package() -> None:
     pages = "".join(page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md"))
     package = DOCS.parent / "humanwalk"
     folders = {folder.name for folder in package.iterdir() if (folder / "__init__.py").is_file()}
     assert set(re.findall(r"^::: humanwalk\.(\w+)\.\*$", pages, re.MULTILINE)) == folders - {"cli"}
 
 
-def test_the_index_lists_every_decision_with_its_title_and_date():
+def test_the_index_lists_every_decision_with_its_title_and_date() -> None:
     folder = DOCS / "decisions"
     records = sorted(folder.glob("0*.md"))
     assert [int(record.name[:4]) for record in records] == list(range(1, len(records) + 1))

@@ -2,6 +2,7 @@
 
 import importlib.util
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +14,14 @@ EXAMPLES = Path(__file__).parent.parent / "examples"
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:multiprocessing")
 
 
-def example(name):
+def example(name: str) -> Any:
     spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
+    module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]
     spec.loader.exec_module(module)
     return module
 
 
-def test_every_example_is_tested():
+def test_every_example_is_tested() -> None:
     tested = {
         "build_a_walker",
         "compare_with_people",
@@ -33,17 +34,17 @@ def test_every_example_is_tested():
     assert {path.stem for path in EXAMPLES.glob("*.py")} == tested
 
 
-def test_build_a_walker_walks():
+def test_build_a_walker_walks() -> None:
     assert example("build_a_walker").main(0.2) > 0
 
 
-def test_sweep_simulates_each_value(monkeypatch):
+def test_sweep_simulates_each_value(monkeypatch: pytest.MonkeyPatch) -> None:
     class SameProcess:
-        def __init__(self, *args, **kwargs): ...
-        def __enter__(self):
+        def __init__(self, *args: int | Path, **kwargs: Any) -> None: ...
+        def __enter__(self) -> Any:
             return self
 
-        def __exit__(self, *args): ...
+        def __exit__(self, *args: int | Path) -> None: ...
 
         map = staticmethod(map)
 
@@ -54,31 +55,31 @@ def test_sweep_simulates_each_value(monkeypatch):
     assert {summary["end"] for summary in summaries} == {"completed"}
 
 
-def test_plot_joint_torques_draws_both_knees(tmp_path):
+def test_plot_joint_torques_draws_both_knees(tmp_path: Path) -> None:
     figure = example("plot_joint_torques").main(0.05, tmp_path / "torques.png")
     assert (tmp_path / "torques.png").stat().st_size > 1000
     assert [line.get_label() for line in figure.axes[0].lines] == ["right knee", "left knee"]
 
 
-def test_own_controller_changes_the_walk():
+def test_own_controller_changes_the_walk() -> None:
     own = example("own_controller")
     assert own.main(0.2, lever=0.05) != own.main(0.2, lever=0.0)
 
 
-def test_recording_is_followed_with_physics_and_shown_without(tmp_path):
+def test_recording_is_followed_with_physics_and_shown_without(tmp_path: Path) -> None:
     runs = example("follow_a_recording").main(tmp_path, duration=0.3)
     assert {name: run.summary["physics"] for name, run in runs.items()} == {"followed": True, "shown": False}
     assert all(run.summary["end"] == "completed" for run in runs.values())
 
 
-def test_comparison_with_people_is_of_every_height():
+def test_comparison_with_people_is_of_every_height() -> None:
     found = example("compare_with_people").main((0.12, 0.2), duration=2.5)
     assert set(found) == {0.12, 0.2}
     # Both bend and straighten the knee when people do; how far is not what a correlation tells.
     assert all(0.5 < correlation < 1.0 for correlation in found.values())
 
 
-def test_read_a_run_reads_what_a_script_saved(tmp_path):
+def test_read_a_run_reads_what_a_script_saved(tmp_path: Path) -> None:
     scenario = humanwalk.load_scenario("thesis", {"duration": "0.1"})
     run = humanwalk.simulate(scenario).save(tmp_path / "run")
     assert example("read_a_run").main(run.path) == pytest.approx(run["right_foot.force_z_N"].max())
@@ -100,14 +101,14 @@ def test_read_a_run_reads_what_a_script_saved(tmp_path):
         humanwalk.simulate(humanwalk.load_scenario("thesis", {"duration": "0.002"})).save(run.path)
 
 
-def test_everything_promised_at_the_top_is_there():
+def test_everything_promised_at_the_top_is_there() -> None:
     for name in humanwalk.__all__:
         assert getattr(humanwalk, name) is not None
     with pytest.raises(AttributeError, match="no_such"):
         _ = humanwalk.no_such
 
 
-def test_importing_the_package_does_not_import_drake():
+def test_importing_the_package_does_not_import_drake() -> None:
     import subprocess
     import sys
 

@@ -2,7 +2,7 @@
 
 import tomllib
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 
@@ -12,12 +12,12 @@ EXTRAS = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(
 
 
 @pytest.mark.parametrize("extra", get_args(Extra))
-def test_extra_exists_and_the_command_installs_it_from_the_checkout(extra):
+def test_extra_exists_and_the_command_installs_it_from_the_checkout(extra: Any) -> None:
     assert EXTRAS[extra]
     assert install_command(extra).endswith(f"pip install -e '.[{extra}]'")
 
 
-def test_error_is_one_line_with_package_and_command():
+def test_error_is_one_line_with_package_and_command() -> None:
     message = str(missing_package("playwright", "video"))
     assert message.startswith("playwright: ")
     assert message.endswith(install_command("video"))

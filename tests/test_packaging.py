@@ -15,7 +15,7 @@ PACKAGE = ROOT / "humanwalk"
 
 
 @pytest.mark.parametrize("name", ["systems", "diagrams", "models"])
-def test_link_at_the_top_leads_into_the_package(name):
+def test_link_at_the_top_leads_into_the_package(name: str) -> None:
     link = ROOT / name
     assert link.is_symlink()
     assert not link.readlink().is_absolute()
@@ -23,14 +23,14 @@ def test_link_at_the_top_leads_into_the_package(name):
     assert link.is_dir()
 
 
-def test_data_of_the_package_is_there():
+def test_data_of_the_package_is_there() -> None:
     package = files("humanwalk")
     assert package.joinpath("py.typed").is_file()
     assert package.joinpath("models/sdf/human.sdf").is_file()
     assert package.joinpath("models/scenarios/thesis.yaml").is_file()
 
 
-def test_every_data_file_is_declared():
+def test_every_data_file_is_declared() -> None:
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["humanwalk"]
     data = {
         path.relative_to(PACKAGE)
@@ -40,17 +40,17 @@ def test_every_data_file_is_declared():
     assert [path for path in data if not any(fnmatch(str(path), pattern) for pattern in declared)] == []
 
 
-def test_every_folder_of_code_is_a_package():
+def test_every_folder_of_code_is_a_package() -> None:
     folders = {path.parent for path in PACKAGE.rglob("*.py")}
     assert [folder for folder in folders if not (folder / "__init__.py").is_file()] == []
 
 
-def test_command_is_installed_and_versions_agree():
+def test_command_is_installed_and_versions_agree() -> None:
     (command,) = entry_points(group="console_scripts", name="humanwalk")
     assert callable(command.load())
     assert version("humanwalk") == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 
-def test_importing_the_scenario_does_not_load_the_application():
+def test_importing_the_scenario_does_not_load_the_application() -> None:
     code = "import sys, humanwalk.scenario; sys.exit(any(m.startswith('humanwalk.run') for m in sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

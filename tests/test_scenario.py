@@ -2,6 +2,9 @@
 
 import dataclasses
 import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -34,12 +37,12 @@ def refusal(text: str = "", overrides: dict[str, str] | None = None) -> str:
 # What is shipped, and what comes back.
 
 
-def test_thesis_is_shipped():
+def test_thesis_is_shipped() -> None:
     assert "thesis" in shipped_scenarios()
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())
-def test_shipped_scenario_is_described_and_round_trips(name):
+def test_shipped_scenario_is_described_and_round_trips(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.description
     assert len(scenario.description.splitlines()) == 1
@@ -47,17 +50,17 @@ def test_shipped_scenario_is_described_and_round_trips(name):
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())
-def test_shipped_scenario_is_the_same_by_name_and_by_path(name):
+def test_shipped_scenario_is_the_same_by_name_and_by_path(name: str) -> None:
     assert load_scenario(shipped_scenarios()[name]) == load_scenario(name)
 
 
 @pytest.mark.parametrize("text", ["", "  \n", "# only a comment\n", "---\n", "_anchors: &a {b: 1}\n"])
-def test_empty_file_is_the_defaults(text):
+def test_empty_file_is_the_defaults(text: str) -> None:
     assert parse_scenario(text) == Scenario()
 
 
-def test_dump_writes_every_field():
-    def names(kind):
+def test_dump_writes_every_field() -> None:
+    def names(kind: Any) -> Iterator[str]:
         for field in dataclasses.fields(kind):
             yield field.name
             if dataclasses.is_dataclass(field.type):
@@ -67,9 +70,9 @@ def test_dump_writes_every_field():
     assert [name for name in names(Scenario) if f"{name}:" not in text] == []
 
 
-def test_anchors_of_underscored_keys_are_usable():
+def test_anchors_of_underscored_keys_are_usable() -> None:
     scenario = parse_scenario("_slow: &slow 0.7\ncontroller: {thesis: {gait: {ramp: {speed: *slow}}}}")
-    assert scenario.controller.gait.ramp.speed == 0.7
+    assert scenario.controller.gait.ramp.speed == 0.7  # type: ignore[attr-defined]
 
 
 # Overrides are typed as in YAML.
@@ -89,7 +92,7 @@ def test_anchors_of_underscored_keys_are_usable():
         ("start.joint_angles.RightLegTibiaMotion", "0.3", {"RightLegTibiaMotion": 0.3}),
     ],
 )
-def test_override_is_typed_like_yaml(key, text, value):
+def test_override_is_typed_like_yaml(key: str, text: str, value: Any) -> None:
     found = parse_scenario("", {key: text})
     for name in key.split(".")[: 1 if key.startswith("contact") else 2]:
         found = getattr(found, name)
@@ -97,29 +100,29 @@ def test_override_is_typed_like_yaml(key, text, value):
     assert type(found) is type(value)
 
 
-def test_override_replaces_one_field_and_keeps_its_neighbours():
+def test_override_replaces_one_field_and_keeps_its_neighbours() -> None:
     text = "controller: {thesis: {gait: {path: {step_length: 0.4, step_height: 0.1}}}}"
-    path = parse_scenario(text, {"controller.thesis.gait.path.step_height": "0.15"}).controller.gait.path
+    path = parse_scenario(text, {"controller.thesis.gait.path.step_height": "0.15"}).controller.gait.path  # type: ignore[attr-defined]
     assert (path.step_length, path.step_height) == (0.4, 0.15)
 
 
-def test_override_reaches_into_a_choice_that_stands_as_its_tag():
+def test_override_reaches_into_a_choice_that_stands_as_its_tag() -> None:
     walk = parse_scenario("controller: balanced", {"controller.balanced.control_period": "0.006"})
     assert walk.controller == BalancedController(control_period=0.006)
 
 
-def test_override_of_a_choice_replaces_it_with_its_fields():
+def test_override_of_a_choice_replaces_it_with_its_fields() -> None:
     text = "contact: {asperity: {friction: 0.3}}"
     assert parse_scenario(text, {"contact": "point"}).contact == PointContact()
 
 
 @pytest.mark.parametrize("key", ["", ".", "gait.", "gait..path", "duration.x", "_x", "_tag", "duration\n"])
-def test_override_of_no_field_is_refused(key):
+def test_override_of_no_field_is_refused(key: str) -> None:
     refusal("", {key: "1"})
 
 
 @pytest.mark.parametrize("value", ["", "[1", "}", "'", "&a [*a]", "1\n---\n2", "[" * 10_000])
-def test_override_that_is_no_number_is_refused(value):
+def test_override_that_is_no_number_is_refused(value: str) -> None:
     assert "duration" in refusal("", {"duration": value})
 
 
@@ -134,7 +137,7 @@ def test_override_that_is_no_number_is_refused(value):
         "controller.thesis.gait.path.step_heigth",
     ],
 )
-def test_misspelt_field_is_answered_with_the_right_one(key):
+def test_misspelt_field_is_answered_with_the_right_one(key: str) -> None:
     message = refusal("", {key: "0.1"})
     assert message.startswith(f"{key}:")
     assert "did you mean step_height?" in message
@@ -151,7 +154,7 @@ def test_misspelt_field_is_answered_with_the_right_one(key):
         ("start.joint_angles.RightLegTibiaMotion", "30", ("degrees", "0.5236")),
     ],
 )
-def test_slip_of_the_unit_is_named_and_mended(key, value, mend):
+def test_slip_of_the_unit_is_named_and_mended(key: str, value: str, mend: tuple[str, str]) -> None:
     message = refusal("", {key: value})
     assert message.startswith(f"{key}:")
     assert all(part in message for part in mend)
@@ -162,7 +165,7 @@ def test_slip_of_the_unit_is_named_and_mended(key, value, mend):
     ["duration", "controller.thesis.gait.ramp.speed", "start.joint_angles.a", "controller.thesis.gains.joints.a.kp"],
 )
 @pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "1e400"])
-def test_number_that_is_not_finite_is_refused(key, value):
+def test_number_that_is_not_finite_is_refused(key: str, value: str) -> None:
     message = refusal("", {key: value})
     assert message.startswith(f"{key}:")
     assert "finite" in message
@@ -172,7 +175,7 @@ def test_number_that_is_not_finite_is_refused(key, value):
     "key", ["duration", "seed", "controller.thesis.inverse_kinematics.max_iterations", "contact", "gait"]
 )
 @pytest.mark.parametrize("value", ["1" + "0" * 400, "-1" + "0" * 400, "1" + "0" * 5000, "0x" + "f" * 9000])
-def test_huge_whole_number_is_refused(key, value):
+def test_huge_whole_number_is_refused(key: str, value: str) -> None:
     assert key in refusal("", {key: value})
 
 
@@ -208,23 +211,23 @@ def test_huge_whole_number_is_refused(key, value):
         ("controller.thesis.gait.path.swing", "3", "allowed: thesis, smooth"),
     ],
 )
-def test_value_of_the_wrong_kind_is_refused(key, value, said):
+def test_value_of_the_wrong_kind_is_refused(key: str, value: str, said: str) -> None:
     message = refusal("", {key: value})
     assert message.startswith(key)
     assert said in message
 
 
-def test_discrete_plant_needs_a_time_step():
+def test_discrete_plant_needs_a_time_step() -> None:
     assert "integrator: cenic" in refusal("simulation: {time_step: 0}")
 
 
-def test_cenic_takes_no_time_step():
+def test_cenic_takes_no_time_step() -> None:
     message = refusal("simulation: {integrator: cenic, time_step: 0.001}")
     assert "simulation.time_step" in message
     assert "set time_step: 0" in message
 
 
-def test_cenic_with_time_step_zero_is_accepted():
+def test_cenic_with_time_step_zero_is_accepted() -> None:
     simulation = parse_scenario("simulation: {integrator: cenic, time_step: 0}").simulation
     assert (simulation.integrator, simulation.time_step) == ("cenic", 0.0)
 
@@ -233,7 +236,7 @@ def test_cenic_with_time_step_zero_is_accepted():
     ("text", "line"),
     [("duration: 1\ngait: [1", 2), ("a: b: c", 1), ("gait:\n\tpath: 1", 2), ("seed: 1\nduration: *nope", 2)],
 )
-def test_syntax_error_names_its_line(text, line):
+def test_syntax_error_names_its_line(text: str, line: int) -> None:
     assert f"at line {line}," in refusal(text)
 
 
@@ -268,31 +271,31 @@ def test_syntax_error_names_its_line(text, line):
         "<<: 3",
     ],
 )
-def test_what_is_no_scenario_is_refused_in_one_line(text):
+def test_what_is_no_scenario_is_refused_in_one_line(text: str) -> None:
     refusal(text)
 
 
 @pytest.mark.parametrize("form", ["{tag} ['{command}']", "duration: {tag} ['{command}']", "_a: {tag} ['{command}']"])
-def test_a_file_runs_no_code(form, tmp_path):
+def test_a_file_runs_no_code(form: str, tmp_path: Path) -> None:
     trace = tmp_path / "trace"
     refusal(form.format(tag="!!python/object/apply:os.system", command=f"touch {trace}"))
     assert not trace.exists()
 
 
-def test_missing_file_is_answered_with_what_is_shipped(tmp_path):
+def test_missing_file_is_answered_with_what_is_shipped(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"no such scenario or file; allowed: .*thesis"):
         load_scenario(tmp_path / "none.yaml")
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00\x01\x80", bytes(range(256))])
-def test_binary_file_is_refused(content, tmp_path):
+def test_binary_file_is_refused(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "picture.yaml"
     path.write_bytes(content)
     with pytest.raises(ParameterError, match="not UTF-8"):
         load_scenario(path)
 
 
-def test_folder_is_refused(tmp_path):
+def test_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"regular file|directory"):
         load_scenario(tmp_path)
 
@@ -304,7 +307,7 @@ FIELDS = dict(fields_of(Scenario))
 KEYS = sorted(FIELDS)
 
 
-def _numbers(kind):
+def _numbers(kind: Any) -> Iterator[tuple[str, Any]]:
     """Strategies of all numbers of a scenario by dotted name, with one choice of each kind."""
     for name, field in fields_of(kind):
         if "low" in field.metadata and not name.startswith(UNCHOSEN):
@@ -335,7 +338,7 @@ values = st.recursive(
 changes = st.dictionaries(st.sampled_from(KEYS) | names, values, min_size=1, max_size=4)
 
 
-def nested(flat):
+def nested(flat: dict[str, Any]) -> dict[str, Any]:
     """The dictionary of a scenario out of values by dotted key; a group that is a value already stays one."""
     data = {}
     for key in sorted(flat):
@@ -352,7 +355,7 @@ def nested(flat):
 
 @settings(max_examples=300)
 @given(changes)
-def test_any_mapping_is_a_scenario_or_refused_in_one_line(flat):
+def test_any_mapping_is_a_scenario_or_refused_in_one_line(flat: dict[str, Any]) -> None:
     text = yaml.safe_dump(nested(flat))
     try:
         scenario = parse_scenario(text)
@@ -364,7 +367,7 @@ def test_any_mapping_is_a_scenario_or_refused_in_one_line(flat):
 
 @settings(max_examples=300)
 @given(st.text(alphabet=st.sampled_from("ab:{}[]&*!-?|>'\"#%,\n\t 0.1~<"), max_size=40))
-def test_any_text_is_a_scenario_or_refused_in_one_line(text):
+def test_any_text_is_a_scenario_or_refused_in_one_line(text: str) -> None:
     try:
         parse_scenario(text)
     except ParameterError as error:
@@ -373,7 +376,7 @@ def test_any_text_is_a_scenario_or_refused_in_one_line(text):
 
 @settings(max_examples=100)
 @given(st.data())
-def test_every_valid_number_survives_dump_and_parse(data):
+def test_every_valid_number_survives_dump_and_parse(data: Any) -> None:
     keys = data.draw(st.lists(st.sampled_from(sorted(NUMBERS)), min_size=1, max_size=8, unique=True))
     flat = {key: data.draw(NUMBERS[key], label=key) for key in keys}
     if flat.get("simulation.time_step") == 0:
@@ -392,13 +395,13 @@ def test_every_valid_number_survives_dump_and_parse(data):
 
 
 @given(st.dictionaries(st.text(st.characters(categories=["L", "N"]), min_size=1), st.floats(-math.pi, math.pi)))
-def test_start_angles_survive_dump_and_parse(angles):
+def test_start_angles_survive_dump_and_parse(angles: dict[str, Any]) -> None:
     scenario = Scenario(start=StartParameters(joint_angles=angles))
     assert parse_scenario(dump_scenario(scenario)) == scenario
 
 
 @pytest.mark.parametrize("key", sorted(NUMBERS))
-def test_every_number_is_refused_just_outside_its_range(key):
+def test_every_number_is_refused_just_outside_its_range(key: str) -> None:
     field = FIELDS[key]
     span = field.metadata["high"] - field.metadata["low"]
     whole = field.metadata["unit"] == "" and field.metadata["high"] >= 1000
@@ -420,7 +423,7 @@ def test_every_number_is_refused_just_outside_its_range(key):
         ("controller: {balanced: {seed: 3}}", "controller.balanced.seed", "the top of the file"),
     ],
 )
-def test_setting_of_another_choice_is_refused_with_the_place_where_it_belongs(text, field, home):
+def test_setting_of_another_choice_is_refused_with_the_place_where_it_belongs(text: str, field: str, home: Any) -> None:
     message = refusal(text)
     assert message.startswith(f"{field}: no such field")
     assert message.endswith(f"it belongs to {home}")
@@ -430,13 +433,13 @@ def test_setting_of_another_choice_is_refused_with_the_place_where_it_belongs(te
     ("scenario", "key"),
     [("walk", "controller.thesis.gait.path.step_height"), ("thesis", "controller.balanced.planner")],
 )
-def test_override_of_another_controllers_setting_is_refused(scenario, key):
+def test_override_of_another_controllers_setting_is_refused(scenario: Any, key: str) -> None:
     with pytest.raises(ParameterError) as error:
         load_scenario(scenario, {key: "0.1"})
     assert "--set controller=" in str(error.value)
 
 
-def test_two_choices_at_once_are_refused():
+def test_two_choices_at_once_are_refused() -> None:
     assert "allowed: point, hydroelastic, asperity" in refusal("contact: {point: {}, asperity: {}}")
 
 
@@ -453,16 +456,16 @@ def test_two_choices_at_once_are_refused():
         ("_a: &a {speed: 1, speed: 2}\ngait: {ramp: *a}\n", "speed", "1 and 1"),
     ],
 )
-def test_key_that_comes_twice_is_refused_wherever_it_is(text, key, lines):
+def test_key_that_comes_twice_is_refused_wherever_it_is(text: str, key: str, lines: str) -> None:
     with pytest.raises(ParameterError) as error:
         parse_scenario(text, name="mine.yaml")
     assert str(error.value).startswith(f"mine.yaml: '{key}' comes twice, at lines {lines}; allowed:")
     assert "\n" not in str(error.value)
 
 
-def test_same_key_in_two_groups_is_no_doubling():
+def test_same_key_in_two_groups_is_no_doubling() -> None:
     points = "[{time: 0.5, forward: 1}, {time: 2, forward: 1}]"
     scenario = parse_scenario(
         f"_a: &a {{time: 1.0}}\n_b: *a\ncontroller: {{balanced: {{command: {{points: {points}}}}}}}\n"
     )
-    assert len(scenario.controller.command.points) == 2
+    assert len(scenario.controller.command.points) == 2  # type: ignore[attr-defined]

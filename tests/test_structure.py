@@ -19,7 +19,7 @@ FREE_OF_BODY_NAMES = [module for module in MODULES if not module.startswith(("bo
 
 LONGEST_FILE, LONGEST_CLASS = 400, 250
 
-BODY_NAMES = {part.name for part in (*human().segments, *human().joints)}
+BODY_NAMES = {part.name for part in (*human().segments, *human().joints)}  # type: ignore[attr-defined]
 BODY_WORDS = {word for name in BODY_NAMES for word in re.findall(r"[A-Z][a-z]+", name)} | {"Sole"}
 """Words that the names of bodies, joints and frames are composed of: Right, Leg, Femur, Motion, ..."""
 PLACEHOLDER = "\N{WHITE SQUARE}"
@@ -41,7 +41,7 @@ def strings(source: ast.Module) -> list[tuple[int, str]]:
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             parts.add(node.value)
         elif isinstance(node, ast.JoinedStr):
-            parts.update(node.values)
+            parts.update(node.values)  # type: ignore[arg-type]
             texts = (part.value if isinstance(part, ast.Constant) else PLACEHOLDER for part in node.values)
             found.append((node.lineno, "".join(str(text) for text in texts)))
         elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in parts:
@@ -77,24 +77,24 @@ def is_part_of_a_name(token: str, alone: bool) -> bool:
         "Thoracic",
     ],
 )
-def test_a_name_of_the_body_is_recognized(text):
+def test_a_name_of_the_body_is_recognized(text: str) -> None:
     assert names_of_the_body(text) != []
 
 
 @pytest.mark.parametrize(
     "text", ["Right", "Side", "Hip, knee and ankle", "right_foot.force_z_N", "MotionTable", "Heading"]
 )
-def test_plain_words_are_not_names_of_the_body(text):
+def test_plain_words_are_not_names_of_the_body(text: str) -> None:
     assert names_of_the_body(text) == []
 
 
 @pytest.mark.parametrize("module", FREE_OF_BODY_NAMES)
-def test_bodies_and_joints_are_named_in_body_and_exchange_only(module):
+def test_bodies_and_joints_are_named_in_body_and_exchange_only(module: str) -> None:
     found = [(line, name) for line, text in strings(tree(module)) for name in names_of_the_body(text)]
     assert [(line, name) for line, name in found if (module, name) not in LABELS] == [], "use humanwalk.body.limbs"
 
 
-def test_no_import_circle_not_even_a_lazy_one_or_one_for_types():
+def test_no_import_circle_not_even_a_lazy_one_or_one_for_types() -> None:
     graph = grimp.build_graph("humanwalk", exclude_type_checking_imports=False, cache_dir=None)
     imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
     try:
@@ -104,7 +104,7 @@ def test_no_import_circle_not_even_a_lazy_one_or_one_for_types():
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_files_and_classes_are_short(module):
+def test_files_and_classes_are_short(module: str) -> None:
     assert len((PACKAGE / module).read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
     classes = [node for node in ast.walk(tree(module)) if isinstance(node, ast.ClassDef)]
     lengths = {node.name: (node.end_lineno or node.lineno) - node.lineno + 1 for node in classes}
@@ -112,7 +112,7 @@ def test_files_and_classes_are_short(module):
 
 
 @pytest.mark.parametrize("module", [module for module in MODULES if module != "numerics/__init__.py"])
-def test_array_types_are_those_of_numerics(module):
+def test_array_types_are_those_of_numerics(module: str) -> None:
     lines = [
         node.lineno for node in ast.walk(tree(module)) if isinstance(node, ast.Attribute) and node.attr == "NDArray"
     ]
@@ -120,13 +120,13 @@ def test_array_types_are_those_of_numerics(module):
 
 
 @pytest.mark.parametrize("module", SYSTEMS)
-def test_ports_are_taken_by_name(module):
+def test_ports_are_taken_by_name(module: str) -> None:
     functions = [node.name for node in ast.walk(tree(module)) if isinstance(node, ast.FunctionDef)]
     assert [name for name in functions if re.fullmatch(r"get_\w+_port", name)] == []
 
 
 @pytest.mark.parametrize("module", SYSTEMS)
-def test_every_leaf_system_has_a_test_file_of_its_name(module):
+def test_every_leaf_system_has_a_test_file_of_its_name(module: str) -> None:
     bases = [
         ast.unparse(base) for node in ast.walk(tree(module)) if isinstance(node, ast.ClassDef) for base in node.bases
     ]

@@ -1,8 +1,9 @@
-"""mypy plugin: corrects what Drake's stubs of `pydrake.systems` state too weakly (Drake 1.58).
+"""mypy plugin: corrects what Drake's stubs state too strictly or too weakly (Drake 1.58).
 
-Python binds these functions to C++ templates, which their generated stubs cannot express:
+Python binds these functions to C++ templates and converts their arguments, which the generated stubs cannot express:
 
-- `Eval` of a port returns `object`: here Any, since its type is that of the port's value;
+- what returns `object` (`Eval` of a port, a shape, a property) has the type of its value: here Any;
+- `GetJointByName`, `GetSubsystemByName` and the like return a base class: here Any;
 - `AddSystem` and `AddNamedSystem` return `System`: here the type of their argument;
 - typed indices (`DiscreteStateIndex`) are not accepted where `int` is declared;
 - calculations of abstract values take `object`: here Any;
@@ -18,23 +19,22 @@ from mypy.types import AnyType, CallableType, FunctionLike, Instance, Type, Type
 FRAMEWORK = "pydrake.systems.framework"
 INDICES = tuple(f"{FRAMEWORK}.{kind}Index" for kind in ("DiscreteState", "AbstractState", "AbstractParameter"))
 """What `LeafSystem.Declare...` returns."""
+TOO_GENERAL = ("builtins.object", f"{FRAMEWORK}.System", "pydrake.multibody.tree.Joint")
+"""Classes that are returned for any of their subclasses."""
 
 
 class DrakePlugin(Plugin):
     """Better types for the calls into `pydrake.systems`."""
 
     def get_method_hook(self, fullname: str) -> Callable[[MethodContext], Type] | None:
-        if not fullname.startswith(f"{FRAMEWORK}."):
-            return None
-        name = fullname.rpartition(".")[2]
-        return {"Eval": _any, "AddSystem": _type_of_system, "AddNamedSystem": _type_of_system}.get(name)
+        return _returned if fullname.startswith("pydrake.") else None
 
     def get_method_signature_hook(self, fullname: str) -> Callable[[MethodSigContext], FunctionLike] | None:
         is_declaration = fullname.endswith(".DeclareAbstractOutputPort")  # named by the class of the caller
-        return self._accept_more if is_declaration or fullname.startswith(f"{FRAMEWORK}.") else None
+        return self._accept_more if is_declaration or fullname.startswith("pydrake.") else None
 
     def get_function_signature_hook(self, fullname: str) -> Callable[[FunctionSigContext], FunctionLike] | None:
-        return self._accept_more if fullname == f"{FRAMEWORK}.ValueProducer" else None
+        return self._accept_more if fullname.startswith("pydrake.") else None
 
     def _accept_more(self, context: MethodSigContext | FunctionSigContext) -> FunctionLike:
         signature = context.default_signature
@@ -59,13 +59,12 @@ class DrakePlugin(Plugin):
         return Instance(symbol.node, arguments)
 
 
-def _any(_: MethodContext) -> Type:
-    return AnyType(TypeOfAny.special_form)
-
-
-def _type_of_system(context: MethodContext) -> Type:
-    (system,) = context.arg_types[context.callee_arg_names.index("system")]
-    return system
+def _returned(context: MethodContext) -> Type:
+    default = context.default_return_type
+    if _is_instance(default, f"{FRAMEWORK}.System") and "system" in context.callee_arg_names:
+        (system,) = context.arg_types[context.callee_arg_names.index("system")]
+        return system
+    return AnyType(TypeOfAny.special_form) if any(_is_instance(default, name) for name in TOO_GENERAL) else default
 
 
 def _is_instance(kind: Type, fullname: str) -> bool:

@@ -65,7 +65,8 @@ class World:
 
     def port(self, system: str, name: str) -> OutputPort:
         """An output port of a system that was added before."""
-        return self.builder.GetSubsystemByName(system).GetOutputPort(name)
+        port: OutputPort = self.builder.GetSubsystemByName(system).GetOutputPort(name)
+        return port
 
     def add[T: System](self, name: str, system: T, **inputs: OutputPort) -> T:
         """Add a named system and connect ports to its inputs of the same names."""

@@ -1,17 +1,19 @@
 """The bare plant repeats the recorded walk, or produces an error."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from humanwalk.bench.bare_plant import BarePlant, record_plant
+from humanwalk.bench.bare_plant import BarePlant, PlantRecord, record_plant
 from humanwalk.quantity import ParameterError
 from humanwalk.run.simulate import prepare
-from humanwalk.scenario import load_scenario
+from humanwalk.scenario import Scenario, load_scenario
 
 DURATION = 0.06
 
 
-def recorded(name, **overrides):
+def recorded(name: str, **overrides: Any) -> tuple[Scenario, PlantRecord]:
     scenario = load_scenario(name, {key.replace("__", "."): value for key, value in overrides.items()})
     prepared = prepare(scenario, record=False)
     record = record_plant(prepared)
@@ -31,7 +33,7 @@ def recorded(name, **overrides):
     ],
     ids=["thesis", "implicit", "hydroelastic", "balanced", "pushed"],
 )
-def test_the_bare_plant_repeats_the_walk_bit_by_bit(name, overrides):
+def test_the_bare_plant_repeats_the_walk_bit_by_bit(name: str, overrides: dict[str, Any]) -> None:
     scenario, record = recorded(name, **overrides)
     bare = BarePlant(scenario, record)
     cost = bare.advance(0.5 * DURATION) + bare.advance(DURATION)
@@ -41,14 +43,14 @@ def test_the_bare_plant_repeats_the_walk_bit_by_bit(name, overrides):
     assert cost.cpu > 0
 
 
-def test_another_walk_is_refused():
+def test_another_walk_is_refused() -> None:
     scenario, record = recorded("thesis")
-    record.inputs["actuation"][3] = record.inputs["actuation"][3] + 1.0
+    record.inputs["actuation"][3] = record.inputs["actuation"][3] + 1.0  # type: ignore[operator]
     with pytest.raises(ParameterError, match="does not repeat"):
         BarePlant(scenario, record).advance(DURATION)
 
 
-def test_a_plant_without_steps_is_refused():
+def test_a_plant_without_steps_is_refused() -> None:
     scenario = load_scenario("thesis", {"simulation.integrator": "cenic", "simulation.time_step": "0"})
     with pytest.raises(ParameterError, match="cenic"):
         record_plant(prepare(scenario, record=False))

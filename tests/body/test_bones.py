@@ -1,5 +1,7 @@
 """The look `bones` shows the geometry of the computed body."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pydrake.multibody.parsing import Parser
@@ -10,15 +12,18 @@ from humanwalk.body.anatomy import REFERENCE_STATURE
 from humanwalk.body.bones import CONTACT, bones
 from humanwalk.body.contact import contact_spheres
 from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.visuals import Visual
+from humanwalk.numerics import Array
 
 
 @pytest.fixture(scope="module", params=[(70.0, 1.75), (45.0, 1.5)], ids=str)
-def skeleton(request):
+def skeleton(request: pytest.FixtureRequest) -> Skeleton:
     mass, stature = request.param
     return human().scaled(mass, stature)
 
 
-def ends(visual):
+def ends(visual: Visual) -> list[Array]:
     """The two ends of a rod's middle line in the body frame."""
     roll, pitch, yaw = visual.rpy
     assert roll == 0.0
@@ -26,11 +31,11 @@ def ends(visual):
     return [np.array(visual.center) + half * visual.size[1] * along for half in (-0.5, 0.5)]
 
 
-def part(skeleton, body, name):
+def part(skeleton: Skeleton, body: str, name: str) -> list[Visual]:
     return [visual for visual in bones(skeleton) if visual.body == body and visual.part == name]
 
 
-def test_a_rod_leads_from_every_joint_to_the_next(skeleton):
+def test_a_rod_leads_from_every_joint_to_the_next(skeleton: Any) -> None:
     for connection in (*skeleton.joints, *skeleton.welds):
         if np.linalg.norm(connection.origin) < 0.009:
             continue
@@ -40,7 +45,7 @@ def test_a_rod_leads_from_every_joint_to_the_next(skeleton):
             assert min(np.linalg.norm(end - wanted) for end in found) < 1e-9
 
 
-def test_every_joint_has_its_axis(skeleton):
+def test_every_joint_has_its_axis(skeleton: Skeleton) -> None:
     for joint in skeleton.joints:
         (axis,) = part(skeleton, joint.child, "axis")
         begin, end = ends(axis)
@@ -49,12 +54,12 @@ def test_every_joint_has_its_axis(skeleton):
         assert len(part(skeleton, joint.child, "joint")) == 1
 
 
-def test_the_contact_points_are_those_that_touch(skeleton):
+def test_the_contact_points_are_those_that_touch(skeleton: Skeleton) -> None:
     shown = [(v.body, v.center, v.size[0]) for v in bones(skeleton) if v.color == CONTACT]
     assert sorted(shown) == sorted((s.body, s.center, s.radius) for s in contact_spheres(skeleton))
 
 
-def test_nothing_is_under_the_ground_and_the_head_is_the_highest(skeleton):
+def test_nothing_is_under_the_ground_and_the_head_is_the_highest(skeleton: Skeleton) -> None:
     scale = skeleton.stature / REFERENCE_STATURE
     for visual in bones(skeleton):
         origin = skeleton.origins[visual.body]
@@ -67,7 +72,7 @@ def test_nothing_is_under_the_ground_and_the_head_is_the_highest(skeleton):
     assert skeleton.origins["Head"][2] + skull.center[2] + skull.size[2] == pytest.approx(skeleton.stature)
 
 
-def test_drake_reads_the_look_strictly_and_only_the_look_differs():
+def test_drake_reads_the_look_strictly_and_only_the_look_differs() -> None:
     plant = MultibodyPlant(time_step=0.0)
     parser = Parser(plant)
     parser.SetStrictParsing()
@@ -79,5 +84,5 @@ def test_drake_reads_the_look_strictly_and_only_the_look_differs():
     np.testing.assert_allclose(M, M_person, atol=1e-12)
 
 
-def test_the_look_changes_neither_mass_nor_stature():
+def test_the_look_changes_neither_mass_nor_stature() -> None:
     assert Subject(look="bones").skeleton == Subject().skeleton

@@ -1,16 +1,18 @@
 """Joint map: the places of the joints in a state are those that the plant itself uses."""
 
 import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import human
+from humanwalk.body.joint_map import JointMap
 
 
-def test_it_lists_every_joint_of_the_body_in_the_model_files_order(joints):
+def test_it_lists_every_joint_of_the_body_in_the_model_files_order(joints: JointMap) -> None:
     assert joints.names == tuple(joint.name for joint in human().joints)
     assert len(joints.names) == 42
 
 
-def test_positions_and_velocities_are_the_plants_own(plant, joints):
+def test_positions_and_velocities_are_the_plants_own(plant: MultibodyPlant, joints: JointMap) -> None:
     context = plant.CreateDefaultContext()
     rng = np.random.default_rng(0)
     q, v = rng.normal(size=len(joints.names)), rng.normal(size=len(joints.names))
@@ -24,16 +26,16 @@ def test_positions_and_velocities_are_the_plants_own(plant, joints):
     np.testing.assert_array_equal(joints.velocities(state), v)
 
 
-def test_actuators_act_on_the_joints_in_the_maps_order(plant, joints):
+def test_actuators_act_on_the_joints_in_the_maps_order(plant: MultibodyPlant, joints: JointMap) -> None:
     selection = plant.MakeActuationMatrix()
     np.testing.assert_array_equal(selection[joints.v], np.eye(len(joints.names)))
 
 
-def test_order_of_joints_and_order_of_state_differ(joints):
+def test_order_of_joints_and_order_of_state_differ(joints: JointMap) -> None:
     assert not np.all(np.diff(joints.q) > 0)
 
 
-def test_limits_are_the_skeletons(joints):
+def test_limits_are_the_skeletons(joints: JointMap) -> None:
     for i, name in enumerate(joints.names):
         joint = human().joint(name)
         np.testing.assert_allclose((joints.lower[i], joints.upper[i]), joint.range_rad, rtol=1e-9)

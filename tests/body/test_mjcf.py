@@ -1,6 +1,7 @@
 """The MJCF model is the same body as the SDF model."""
 
 import xml.etree.ElementTree as ET
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,17 +12,18 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.mjcf import to_mjcf
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.body.sdf import LOOKS
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.exchange.mujoco_map import MujocoMap
 
 SUBJECTS = [Subject(), Subject(mass=55.0, stature=1.6)]
 
 
 @pytest.fixture(params=LOOKS)
-def model(request, skeleton):
+def model(request: pytest.FixtureRequest, skeleton: Skeleton) -> Any:
     return ET.fromstring(to_mjcf(skeleton, request.param))
 
 
-def test_bodies_joints_and_motors_are_the_skeletons(model, skeleton):
+def test_bodies_joints_and_motors_are_the_skeletons(model: Any, skeleton: Skeleton) -> None:
     assert {body.get("name") for body in model.iter("body")} == {segment.name for segment in skeleton.segments}
     motors = [motor.get("joint") for motor in model.iter("motor")]
     assert motors == [joint.name for joint in skeleton.joints]
@@ -29,12 +31,12 @@ def test_bodies_joints_and_motors_are_the_skeletons(model, skeleton):
     assert len(list(model.iter("freejoint"))) == 1
 
 
-def test_bodies_have_their_parents(model, skeleton):
+def test_bodies_have_their_parents(model: Any, skeleton: Any) -> None:
     children = {child.get("name"): body.get("name") for body in model.iter("body") for child in body.findall("body")}
     assert children == {inboard.child: inboard.parent for inboard in (*skeleton.joints, *skeleton.welds)}
 
 
-def test_only_soles_touch_and_only_the_ground(model, skeleton):
+def test_only_soles_touch_and_only_the_ground(model: Any, skeleton: Skeleton) -> None:
     touching = {geom.get("name") for geom in model.iter("geom") if geom.get("conaffinity") == "1"}
     assert touching == {sphere.name for sphere in contact_spheres(skeleton)}
     assert [geom.get("name") for geom in model.iter("geom") if geom.get("contype") == "1"] == ["ground"]
@@ -43,7 +45,7 @@ def test_only_soles_touch_and_only_the_ground(model, skeleton):
 class Both:
     """A subject in both programs, in the same random states."""
 
-    def __init__(self, subject):
+    def __init__(self, subject: Subject) -> None:
         self.mujoco = pytest.importorskip("mujoco")
         self.plant = kinematics_plant(subject)
         self.context = self.plant.CreateDefaultContext()
@@ -52,7 +54,7 @@ class Both:
         self.data = self.mujoco.MjData(self.model)
         self.map = MujocoMap.of(self.joints, self.model)
 
-    def move(self, rng):
+    def move(self, rng: np.random.Generator) -> Any:
         q = self.plant.GetPositions(self.context)
         quaternion = rng.standard_normal(4)
         q[:4], q[4:7] = quaternion / np.linalg.norm(quaternion), rng.uniform(-1.0, 1.0, 3)
@@ -67,17 +69,17 @@ class Both:
 
 
 @pytest.fixture(params=SUBJECTS, ids=["reference", "small"])
-def both(request):
+def both(request: pytest.FixtureRequest) -> Any:
     return Both(request.param)
 
 
-def test_positions_survive_the_round_trip(both):
+def test_positions_survive_the_round_trip(both: Any) -> None:
     q, T = both.move(np.random.default_rng(1))
     assert np.array_equal(both.map.to_q(both.map.to_qpos(q)), q)
     assert np.allclose(T @ T.T, np.eye(T.shape[0]), atol=1e-14)
 
 
-def test_mass_matrices_are_equal(both):
+def test_mass_matrices_are_equal(both: Any) -> None:
     rng = np.random.default_rng(2)
     for _ in range(5):
         _, T = both.move(rng)
@@ -87,7 +89,7 @@ def test_mass_matrices_are_equal(both):
         assert np.abs(T @ in_mujoco @ T.T - M).max() <= 1e-9 * np.abs(M).max()
 
 
-def test_gravity_and_gyroscopic_forces_are_equal(both):
+def test_gravity_and_gyroscopic_forces_are_equal(both: Any) -> None:
     rng = np.random.default_rng(3)
     for _ in range(5):
         _, T = both.move(rng)
@@ -96,7 +98,7 @@ def test_gravity_and_gyroscopic_forces_are_equal(both):
 
 
 @pytest.mark.parametrize("name", ["Head", "RightArm_Hand", "LeftLeg_FootToes"])
-def test_bodies_have_equal_motion(both, name):
+def test_bodies_have_equal_motion(both: Any, name: str) -> None:
     both.move(np.random.default_rng(4))
     body = both.plant.GetBodyByName(name)
     assert both.data.body(name).xpos == pytest.approx(body.EvalPoseInWorld(both.context).translation(), abs=1e-9)

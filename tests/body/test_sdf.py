@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ class Parsed:
         self.diagram = builder.Build()
         self.context = self.plant.CreateDefaultContext()
 
-    def shapes(self, role: Role, name_part: str = "") -> list[tuple[str, object, RigidTransform]]:
+    def shapes(self, role: Role, name_part: str = "") -> Any:
         """Name, shape and pose in the world of every geometry whose name contains a part."""
         inspector = self.scene_graph.model_inspector()
         found = []
@@ -60,7 +61,7 @@ def parsed(request: pytest.FixtureRequest) -> Parsed:
     return Parsed(PEOPLE[request.param])
 
 
-def lowest_point(shape: object, X_WG: RigidTransform) -> float:
+def lowest_point(shape: Any, X_WG: RigidTransform) -> float:
     """Height of the lowest point of a primitive."""
     up = X_WG.rotation().matrix()[2]
     name = type(shape).__name__

@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 
 from humanwalk.run.folder import REPLAY
@@ -11,7 +13,7 @@ DURATION = 0.5
 
 
 @pytest.fixture(scope="session")
-def browser():
+def browser() -> None:
     """Skips what needs a browser where there is none, or none of the packages that drive it."""
     pytest.importorskip("playwright.sync_api")
     pytest.importorskip("imageio_ffmpeg")
@@ -20,7 +22,7 @@ def browser():
 
 
 @pytest.fixture(scope="session")
-def short_run(browser, tmp_path_factory):
+def short_run(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A run with its replay."""
     meshcat = make_meshcat()
     outcome = simulate(load_scenario("thesis", {"duration": str(DURATION), "recording.frame_rate": "50"}), meshcat)

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import subprocess
+from typing import Any
 
 import numpy as np
 import pytest
@@ -60,14 +61,14 @@ LOOK = """
 
 
 @pytest.fixture(scope="module")
-def outcome_and_page():
+def outcome_and_page() -> Any:
     meshcat = make_meshcat()
     outcome = simulate(load_scenario("thesis", {"duration": "0.5", "recording.frame_rate": "50"}), meshcat)
     return outcome, static_page(meshcat)
 
 
 @pytest.fixture(scope="module")
-def probe(outcome_and_page, tmp_path_factory):
+def probe(outcome_and_page: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """What the page did in a browser: its complaints, its requests, and the pelvis at TIMES."""
     _, page = outcome_and_page
     folder = tmp_path_factory.mktemp("replay")
@@ -81,7 +82,7 @@ def probe(outcome_and_page, tmp_path_factory):
     (folder / "page.html").write_text(page, encoding="utf-8")
     result = subprocess.run(
         [
-            CHROMIUM,
+            CHROMIUM,  # type: ignore[list-item]
             "--headless",
             "--no-sandbox",
             "--use-angle=swiftshader",
@@ -102,24 +103,24 @@ def probe(outcome_and_page, tmp_path_factory):
     return json.loads(found.group(1))
 
 
-def test_page_logs_no_error(probe):
+def test_page_logs_no_error(probe: Any) -> None:
     assert probe["errors"] == []
 
 
-def test_page_requests_nothing(probe):
+def test_page_requests_nothing(probe: Any) -> None:
     assert probe["blocked"] == []
     assert [url for url in probe["requests"] if not url.startswith(("data:", "blob:"))] == []
 
 
-def test_page_plays_automatically(probe):
+def test_page_plays_automatically(probe: Any) -> None:
     assert probe["playing"]
 
 
-def test_tracks_are_equally_long_so_that_they_repeat_in_step(probe):
+def test_tracks_are_equally_long_so_that_they_repeat_in_step(probe: Any) -> None:
     assert set(probe["durations"]) == {0.5}
 
 
-def test_pelvis_is_where_it_was_in_the_simulation(probe, outcome_and_page):
+def test_pelvis_is_where_it_was_in_the_simulation(probe: Any, outcome_and_page: Any) -> None:
     signals = outcome_and_page[0].signals
     time = signals["time_s"].to_numpy()
     for instant, frame in zip(TIMES, probe["frames"], strict=True):
@@ -128,7 +129,7 @@ def test_pelvis_is_where_it_was_in_the_simulation(probe, outcome_and_page):
         np.testing.assert_allclose(frame["recorded"], expected, rtol=0.0, atol=1e-6)
 
 
-def test_view_stays_with_the_walker(probe):
+def test_view_stays_with_the_walker(probe: Any) -> None:
     travelled = probe["frames"][1]["recorded"][0] - probe["frames"][0]["recorded"][0]
     assert travelled > 0.1
     for frame in probe["frames"]:

@@ -1,8 +1,13 @@
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from PIL import Image
 from pydrake.multibody.plant import MultibodyPlant
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.systems.signal import state_columns
@@ -17,12 +22,12 @@ FRAME_TIMES = (0.12, 0.36)
 
 
 @pytest.fixture(scope="module")
-def stage(short_run):
+def stage(short_run: Any) -> Iterator[Any]:
     with open_stage(short_run.replay, WIDTH, HEIGHT, short_run.summary["duration_s"]) as stage:
         yield stage
 
 
-def states(run, plant: MultibodyPlant, joints, time):
+def states(run: Any, plant: MultibodyPlant, joints: JointMap, time: Any) -> Any:
     signals = run.signals
     (row,) = np.flatnonzero(np.isclose(signals[TIME].to_numpy(), time, rtol=0.0, atol=1e-9))
     return matrix(signals, state_columns(joints))[row][: plant.num_positions()]
@@ -30,7 +35,9 @@ def states(run, plant: MultibodyPlant, joints, time):
 
 @pytest.mark.parametrize("time", FRAME_TIMES)
 @pytest.mark.parametrize("body", ["Pelvis", "Head", "RightLeg_FootToes", "LeftLeg_Ankle", "LeftArm_Hand"])
-def test_a_frame_shows_the_recorded_pose_of_every_body(stage, short_run, joints, time, body):
+def test_a_frame_shows_the_recorded_pose_of_every_body(
+    stage: Any, short_run: Any, joints: JointMap, time: Any, body: Any
+) -> None:
     plant = kinematics_plant(Subject())
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, states(short_run, plant, joints, time))
@@ -39,14 +46,14 @@ def test_a_frame_shows_the_recorded_pose_of_every_body(stage, short_run, joints,
     np.testing.assert_allclose(shown, expected, rtol=0.0, atol=1e-6)
 
 
-def test_the_page_logs_no_error_and_requests_nothing(stage):
+def test_the_page_logs_no_error_and_requests_nothing(stage: Any) -> None:
     stage.still(0.1, camera("follow", 0.1))
     assert stage.complaints == []
 
 
 @pytest.mark.parametrize("view", ["follow", "side", "front", "orbit"])
-def test_every_view_shows_the_walker_before_the_sky(stage, tmp_path, view):
-    def pixels(look):
+def test_every_view_shows_the_walker_before_the_sky(stage: Any, tmp_path: Path, view: Any) -> None:
+    def pixels(look: Any) -> Any:
         path = tmp_path / "still.png"
         path.write_bytes(stage.still(0.25, look, "png"))
         return np.asarray(Image.open(path).convert("RGB"), dtype=float)
@@ -59,7 +66,7 @@ def test_every_view_shows_the_walker_before_the_sky(stage, tmp_path, view):
 
 
 @pytest.mark.parametrize(("time", "loaded"), [(0.2, True), (0.4, False)])
-def test_force_arrows_are_drawn_over_the_body(stage, tmp_path, time, loaded):
+def test_force_arrows_are_drawn_over_the_body(stage: Any, tmp_path: Path, time: Any, loaded: Any) -> None:
     """As in the page: the line of action of the force runs inside the leg. At 0.4 s no foot is loaded."""
     (tmp_path / "still.png").write_bytes(stage.still(time, camera("side", time), "png"))
     with Image.open(tmp_path / "still.png") as still:

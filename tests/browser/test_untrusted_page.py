@@ -5,7 +5,10 @@ import json
 import socket
 import struct
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -47,7 +50,7 @@ MARKUP = """
 """
 
 
-def packed(value):
+def packed(value: Any) -> bytes:
     """Msgpack of text, numbers, lists and dictionaries."""
     match value:
         case str():
@@ -65,7 +68,7 @@ def packed(value):
     raise TypeError(value)
 
 
-def hostile_commands(script, port):
+def hostile_commands(script: Any, port: Any) -> Any:
     """Commands that Meshcat's viewer would evaluate, insert as HTML, or load an image for."""
     url = f"http://127.0.0.1:{port}/texture.png"
     texture = {
@@ -90,7 +93,7 @@ def hostile_commands(script, port):
     ]
 
 
-def animation(duration):
+def animation(duration: float) -> Any:
     keys = [{"time": frame, "value": [0.0, 0.0, 0.0]} for frame in (0.0, duration)]
     track = {"name": ".position", "type": "vector3", "keys": keys}
     clip = {"fps": 1.0, "name": "default", "tracks": [track]}
@@ -107,15 +110,15 @@ def animation(duration):
     }
 
 
-def with_recording(page, commands):
+def with_recording(page: Any, commands: Any) -> Any:
     """A page with these commands after its own; with `page` None, a page that contains nothing else."""
-    own = json.loads(RECORDING.search(page)[1])
+    own = json.loads(RECORDING.search(page)[1])  # type: ignore[index]
     added = [base64.b64encode(packed(command)).decode() for command in commands]
     return RECORDING.sub(f"{RECORDING_TAG}{json.dumps(own + added)}</script>", page)
 
 
 @contextmanager
-def listener():
+def listener() -> Iterator[Any]:
     """A port on which TCP connections and UDP packets are collected."""
     seen, done = [], threading.Event()
     with socket.socket() as tcp, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
@@ -124,7 +127,7 @@ def listener():
         udp.bind(("127.0.0.1", port))
         tcp.listen()
 
-        def collect_tcp():
+        def collect_tcp() -> None:
             while not done.is_set():
                 try:
                     connection, _ = tcp.accept()
@@ -137,7 +140,7 @@ def listener():
                     except OSError:
                         seen.append(b"connected")
 
-        def collect_udp():
+        def collect_udp() -> None:
             while not done.is_set():
                 try:
                     seen.append(udp.recv(100))
@@ -157,10 +160,10 @@ def listener():
 
 
 @pytest.fixture
-def hostile_page(short_run, tmp_path):
+def hostile_page(short_run: Any, tmp_path: Path) -> Any:
     """Writes the page of a short run with scripts, markup and commands that try to reach a port."""
 
-    def write(port):
+    def write(port: Any) -> Any:
         script = SCRIPT.replace("PORT", str(port))
         page = short_run.replay.read_text(encoding="utf-8")
         begin = page.index("<meta http-equiv")
@@ -173,7 +176,7 @@ def hostile_page(short_run, tmp_path):
     return write
 
 
-def test_hostile_page_is_rendered_without_a_byte_to_the_network(hostile_page):
+def test_hostile_page_is_rendered_without_a_byte_to_the_network(hostile_page: Any) -> None:
     with listener() as (port, seen):
         with open_stage(hostile_page(port), WIDTH, HEIGHT, 0.5) as stage:
             assert stage.duration == pytest.approx(0.5)
@@ -185,7 +188,7 @@ def test_hostile_page_is_rendered_without_a_byte_to_the_network(hostile_page):
         assert [text for text in stage.complaints if "/fetch" in text or "/beacon" in text] == []
 
 
-def test_browser_has_no_network_even_for_scripts_that_run(hostile_page):
+def test_browser_has_no_network_even_for_scripts_that_run(hostile_page: Any) -> None:
     with listener() as (port, seen):
         # The listener works.
         socket.create_connection(("127.0.0.1", port)).close()
@@ -201,7 +204,7 @@ def test_browser_has_no_network_even_for_scripts_that_run(hostile_page):
 
 
 @pytest.mark.parametrize("duration", [1e9, float("inf"), float("nan"), -1.0, 0.6])
-def test_duration_beyond_that_of_the_run_is_refused(short_run, tmp_path, duration):
+def test_duration_beyond_that_of_the_run_is_refused(short_run: Any, tmp_path: Path, duration: float) -> None:
     page = tmp_path / "page.html"
     recording = json.dumps([base64.b64encode(packed(animation(duration))).decode()])
     page.write_text(RECORDING.sub(f"{RECORDING_TAG}{recording}</script>", short_run.replay.read_text(encoding="utf-8")))
@@ -216,7 +219,7 @@ def test_duration_beyond_that_of_the_run_is_refused(short_run, tmp_path, duratio
 @pytest.mark.parametrize(
     "command", [b"\xc1", b"\xdf\xff\xff\xff\xff", packed({"type": "set_object", "path": "/a"}), b""]
 )
-def test_broken_recording_produces_a_one_line_error(short_run, tmp_path, command):
+def test_broken_recording_produces_a_one_line_error(short_run: Any, tmp_path: Path, command: Any) -> None:
     page = tmp_path / "page.html"
     recording = json.dumps([base64.b64encode(command).decode() or "AAAA"])
     page.write_text(RECORDING.sub(f"{RECORDING_TAG}{recording}</script>", short_run.replay.read_text(encoding="utf-8")))

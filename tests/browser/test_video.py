@@ -1,6 +1,8 @@
 import hashlib
 import signal
 import subprocess
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ WIDTH, HEIGHT = 160, 120
 SMALL = VideoParameters(frame_rate=16.0, width=WIDTH, height=HEIGHT)
 
 
-def frame_hashes(video):
+def frame_hashes(video: Any) -> Any:
     """One hash a frame, by ffmpeg; of what is decoded, not of the file."""
     result = subprocess.run(
         [find_ffmpeg(), "-loglevel", "error", "-i", str(video), "-f", "framemd5", "-"],
@@ -26,7 +28,7 @@ def frame_hashes(video):
     return [line.split(",")[-1].strip() for line in result.stdout.splitlines() if not line.startswith("#")]
 
 
-def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run, tmp_path):
+def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run: Any, tmp_path: Path) -> None:
     videos = [tmp_path / name for name in ("one.mp4", "two.mp4")]
     for video in videos:
         assert record_video(short_run.path, video, SMALL) == 9
@@ -38,17 +40,17 @@ def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run, tmp_pa
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_a_gif_or_webp_has_every_frame_and_loops(short_run, tmp_path, suffix):
+def test_a_gif_or_webp_has_every_frame_and_loops(short_run: Any, tmp_path: Path, suffix: Any) -> None:
     path = tmp_path / f"walk{suffix}"
     record_video(short_run.path, path, VideoParameters(frame_rate=10.0, width=WIDTH, height=HEIGHT))
     with Image.open(path) as picture:
-        assert picture.n_frames == 6
+        assert picture.n_frames == 6  # type: ignore[attr-defined]
         assert picture.size == (WIDTH, HEIGHT)
         assert picture.info["loop"] == 0
 
 
-def test_ctrl_c_leaves_no_file(short_run, tmp_path):
-    def press(done, frames):
+def test_ctrl_c_leaves_no_file(short_run: Any, tmp_path: Path) -> None:
+    def press(done: Any, frames: Any) -> None:
         if done == 2:
             signal.raise_signal(signal.SIGINT)
 
@@ -57,7 +59,7 @@ def test_ctrl_c_leaves_no_file(short_run, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_strip_has_a_still_for_every_time(short_run, tmp_path):
+def test_a_strip_has_a_still_for_every_time(short_run: Any, tmp_path: Path) -> None:
     path = tmp_path / "strip.png"
     write_snapshot(short_run.path, path, [0.1, 0.2, 0.3], 100, 160, "side")
     with Image.open(path) as strip:
@@ -70,7 +72,7 @@ def test_a_strip_has_a_still_for_every_time(short_run, tmp_path):
     assert pixels[:, 100:108].min() == 255.0
 
 
-def test_times_outside_the_replay_are_refused(short_run, tmp_path):
+def test_times_outside_the_replay_are_refused(short_run: Any, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"--to: 2 .*allowed: 0 to 0.5 s"):
         record_video(short_run.path, tmp_path / "walk.mp4", VideoParameters(end=2.0))
     with pytest.raises(ParameterError, match=r"--times: 3 .*allowed: 0 to 0.5 s"):
@@ -78,14 +80,18 @@ def test_times_outside_the_replay_are_refused(short_run, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_invalid_browser_is_named_in_the_error(short_run, tmp_path, monkeypatch):
+def test_an_invalid_browser_is_named_in_the_error(
+    short_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("CHROMIUM", "/bin/false")
     with pytest.raises(ParameterError, match=r"/bin/false does not start.*CHROMIUM") as error:
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL)
     assert "\n" not in str(error.value)
 
 
-def test_a_browser_without_webgl_produces_an_error(short_run, tmp_path, monkeypatch):
+def test_a_browser_without_webgl_produces_an_error(
+    short_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("humanwalk.view.browser.FLAGS", ("--disable-gpu", "--disable-3d-apis"))
     with pytest.raises(ParameterError, match=r"no WebGL.*install chromium"):
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL)

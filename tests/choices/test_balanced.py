@@ -1,5 +1,7 @@
 """The balanced walker stays up by itself, with no force on it but the ground's, and refuses what it cannot do."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
@@ -15,13 +17,13 @@ PORTS = {
 }
 
 
-def test_it_exports_what_a_run_records():
+def test_it_exports_what_a_run_records() -> None:
     diagram = make_diagram(load_scenario("stand"))
     assert {diagram.get_output_port(i).get_name() for i in range(diagram.num_output_ports())} == PORTS
     assert diagram.num_input_ports() == 0
 
 
-def test_nothing_but_the_ground_acts_on_it():
+def test_nothing_but_the_ground_acts_on_it() -> None:
     diagram = make_diagram(load_scenario("walk"))
     assert not diagram.HasSubsystemNamed("support")
     plant = diagram.GetSubsystemByName("plant")
@@ -31,7 +33,7 @@ def test_nothing_but_the_ground_acts_on_it():
     assert not plant.get_applied_spatial_force_input_port().HasValue(context)
 
 
-def test_who_is_to_be_pushed_has_a_source_of_pushes():
+def test_who_is_to_be_pushed_has_a_source_of_pushes() -> None:
     push = "[{time: 0.0, duration: 0.1, impulse: 10.0}]"
     diagram = make_diagram(load_scenario("walk", {"pushes.given": push}))
     plant, source = diagram.GetSubsystemByName("plant"), diagram.GetSubsystemByName("pushes")
@@ -44,7 +46,7 @@ def test_who_is_to_be_pushed_has_a_source_of_pushes():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", ["point", "hydroelastic", "asperity"])
-def test_it_stands_on_every_ground(contact):
+def test_it_stands_on_every_ground(contact: Any) -> None:
     diagram = make_diagram(load_scenario("stand", {"contact": contact}))
     simulator = Simulator(diagram)
     context = simulator.get_context()
@@ -58,7 +60,7 @@ def test_it_stands_on_every_ground(contact):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", ["point", "hydroelastic", "asperity"])
-def test_it_walks_its_first_steps(contact):
+def test_it_walks_its_first_steps(contact: Any) -> None:
     diagram = make_diagram(
         load_scenario("walk", {"controller.balanced.command.points": "[{time: 0.2, forward: 0.6}]", "contact": contact})
     )
@@ -75,7 +77,7 @@ def test_it_walks_its_first_steps(contact):
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_bits():
+def test_the_same_seed_gives_the_same_bits() -> None:
     ends = []
     for _ in range(2):
         diagram = make_diagram(load_scenario("walk", {"seed": "3", "simulation.time_step": "0.002"}))
@@ -85,10 +87,10 @@ def test_the_same_seed_gives_the_same_bits():
     assert ends[0] == ends[1]
 
 
-def test_a_continuous_plant_is_refused():
+def test_a_continuous_plant_is_refused() -> None:
     with pytest.raises(ParameterError, match=r"allowed: simulation.integrator: discrete"):
         make_diagram(load_scenario("walk", {"simulation.integrator": "cenic", "simulation.time_step": "0"}))
 
 
-def test_the_default_controller_is_the_thesis():
+def test_the_default_controller_is_the_thesis() -> None:
     assert make_diagram(parse_scenario("")).HasSubsystemNamed("inverse_kinematics")

@@ -1,9 +1,11 @@
 """A choice of one's own needs a class and a tag: no other code changes (docs/architecture.md, Extensions)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
@@ -12,6 +14,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.choices import ACTUATIONS, CONTACTS, CONTROLLERS, PdActuation, PointContact, ThesisController
 from humanwalk.choices.controller import Command
 from humanwalk.diagrams.walker import make_walker
+from humanwalk.numerics import Array
 from humanwalk.parameter_file import fields_of
 from humanwalk.quantity import quantity
 from humanwalk.run.recorder import Recorder
@@ -27,7 +30,7 @@ class Plateau(Plane):
     rise: float = quantity(0.3, "m", 0.0, 1.0)
     """Its height."""
 
-    def height(self, xy):
+    def height(self, xy: Array) -> Any:
         return super().height(xy) + self.rise
 
 
@@ -35,7 +38,7 @@ class Plateau(Plane):
 class Slippery(PointContact):
     """Point contact on ground that is more slippery than its terrain."""
 
-    def ground_properties(self, friction):
+    def ground_properties(self, friction: float) -> Any:
         return super().ground_properties(0.5 * friction)
 
 
@@ -43,7 +46,7 @@ class Slippery(PointContact):
 class Statue(ThesisController):
     """Holds the start posture, and records a number of its own."""
 
-    def add_to(self, world):
+    def add_to(self, world: Any) -> Any:
         n = len(world.joints.names)
         posture = world.add("statue", ConstantVectorSource(np.zeros(2 * n))).get_output_port()
         answer = world.add("answer", ConstantVectorSource([42.0]))
@@ -55,12 +58,12 @@ class Statue(ThesisController):
 class Soft(PdActuation):
     """PD with a tenth of every gain."""
 
-    def install(self, plant, kp, kd):
+    def install(self, plant: MultibodyPlant, kp: Any, kd: Any) -> None:
         super().install(plant, 0.1 * kp, 0.1 * kd)
 
 
 @pytest.fixture
-def scenario(monkeypatch):
+def scenario(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A scenario of four choices that humanwalk does not ship, out of a file."""
     for registry, tag, kind in (
         (TERRAINS, "plateau", Plateau),
@@ -74,7 +77,7 @@ def scenario(monkeypatch):
     )
 
 
-def test_a_file_names_them_with_their_own_fields(scenario):
+def test_a_file_names_them_with_their_own_fields(scenario: Any) -> None:
     assert scenario.terrain == Plateau(rise=0.2)
     assert (scenario.contact, scenario.controller) == (Slippery(), Statue())
     assert scenario.actuation == Soft(law="implicit")
@@ -82,13 +85,13 @@ def test_a_file_names_them_with_their_own_fields(scenario):
     assert "terrain.plateau.rise" in dict(fields_of(Scenario))
 
 
-def test_the_body_starts_on_the_terrain(scenario):
+def test_the_body_starts_on_the_terrain(scenario: Any) -> None:
     walker = make_walker(scenario)
     soles = walker.GetOutputPort("soles").Eval(walker.CreateDefaultContext())
     np.testing.assert_allclose(soles[[2, 5]], 0.2, atol=1e-3)
 
 
-def test_signals_of_a_new_system_are_recorded(scenario):
+def test_signals_of_a_new_system_are_recorded(scenario: Any) -> None:
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_walker(scenario))
     recorder = Recorder.add_to(builder, walker, JointMap.of(walker.GetSubsystemByName("plant")), 0.004)

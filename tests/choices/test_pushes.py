@@ -1,5 +1,7 @@
 """Pushes act with every controller."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
@@ -25,17 +27,17 @@ def momentum_along_y(scenario: str, overrides: dict[str, str]) -> float:
     [("thesis", {"controller.thesis.balance.support.enabled": "false"}), ("stand", {})],
     ids=["thesis", "balanced"],
 )
-def test_a_push_gives_the_body_momentum_whatever_the_controller(scenario, overrides):
+def test_a_push_gives_the_body_momentum_whatever_the_controller(scenario: Any, overrides: Any) -> None:
     gained = momentum_along_y(scenario, overrides | PUSH) - momentum_along_y(scenario, overrides)
     # The feet change it a little: they rest on the ground with friction.
     assert 3.0 < gained < 13.0
 
 
-def test_a_walker_without_pushes_records_none():
+def test_a_walker_without_pushes_records_none() -> None:
     walker = make_walker(parse_scenario(""))
     np.testing.assert_array_equal(walker.GetOutputPort("push").Eval(walker.CreateDefaultContext()), 0.0)
 
 
-def test_random_pushes_need_time_between_them():
+def test_random_pushes_need_time_between_them() -> None:
     with pytest.raises(ParameterError, match=r"^pushes\.random_interval: 1e-09 .* allowed: 0, or 0\.1 to 600 s"):
         parse_scenario("pushes: {random_interval: 1e-9}")

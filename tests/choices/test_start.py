@@ -1,41 +1,47 @@
 """The start: the angles that are asked for, noise within the ranges, and soles on the ground whatever they are."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body import contact_spheres
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.choices import ThesisController, start
 from humanwalk.choices.start import StartParameters
 from humanwalk.control.reach import require_reachable
 from humanwalk.diagrams.world import add_world
 from humanwalk.gait.foot_cycle import minimum_offset
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 
 
-def start_positions(scenario):
+def start_positions(scenario: Scenario) -> Array:
     posture = scenario.controller.start_posture(scenario.subject, scenario.terrain)
     return start.start_positions(scenario.subject, scenario.terrain, scenario.start, posture, scenario.seed)
 
 
-def start_velocities(scenario):
+def start_velocities(scenario: Scenario) -> Array:
     return start.start_velocities(scenario.subject, scenario.start, scenario.seed)
 
 
-def human_gains(scenario):
+def human_gains(scenario: Scenario) -> tuple[Array, Array]:
     world = add_world(DiagramBuilder(), scenario)
     return world.kp, world.kd
 
 
-def require_thesis_reachable(scenario):
+def require_thesis_reachable(scenario: Any) -> None:
     controller = scenario.controller
     require_reachable(scenario.subject, controller.gait.path, controller.inverse_kinematics)
 
 
-def lowest_point(plant, skeleton, q) -> float:
+def lowest_point(plant: Any, skeleton: Skeleton, q: Array) -> float:
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, q)
     return min(
@@ -46,7 +52,9 @@ def lowest_point(plant, skeleton, q) -> float:
 
 @settings(max_examples=40)
 @given(st.data())
-def test_lowest_point_of_the_soles_touches_the_ground(plant, skeleton, joints, data):
+def test_lowest_point_of_the_soles_touches_the_ground(
+    plant: MultibodyPlant, skeleton: Skeleton, joints: JointMap, data: Any
+) -> None:
     chosen = data.draw(st.lists(st.integers(0, 41), max_size=5, unique=True))
     angles = {
         joints.names[i]: data.draw(st.floats(max(joints.lower[i], -3.1), min(joints.upper[i], 3.1))) for i in chosen
@@ -57,12 +65,14 @@ def test_lowest_point_of_the_soles_touches_the_ground(plant, skeleton, joints, d
         assert q[joints.q[joints.names.index(name)]] == angle
 
 
-def test_start_faces_forward_above_the_origin():
+def test_start_faces_forward_above_the_origin() -> None:
     q = start_positions(Scenario())
     np.testing.assert_array_equal(q[:6], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
-def test_noise_stays_within_the_ranges_and_has_the_size_that_is_asked_for(plant, skeleton, joints):
+def test_noise_stays_within_the_ranges_and_has_the_size_that_is_asked_for(
+    plant: MultibodyPlant, skeleton: Skeleton, joints: JointMap
+) -> None:
     calm = start_positions(Scenario())[joints.q]
     errors = []
     for seed in range(20):
@@ -76,14 +86,14 @@ def test_noise_stays_within_the_ranges_and_has_the_size_that_is_asked_for(plant,
     assert np.std(np.array(errors)[:, inside]) == pytest.approx(0.02, rel=0.1)
 
 
-def test_the_body_starts_at_rest_unless_rates_are_noisy(joints):
+def test_the_body_starts_at_rest_unless_rates_are_noisy(joints: JointMap) -> None:
     assert not start_velocities(Scenario(seed=3)).any()
     rates = np.array([start_velocities(Scenario(seed=s, start=StartParameters(rate_noise=0.1))) for s in range(20)])
     assert not rates[:, :6].any()
     assert np.std(rates[:, joints.v]) == pytest.approx(0.1, rel=0.1)
 
 
-def test_noise_of_rates_gains_and_angles_is_independent(joints):
+def test_noise_of_rates_gains_and_angles_is_independent(joints: JointMap) -> None:
     noise = StartParameters(joint_noise=1e-3, rate_noise=1e-3, gain_noise=1e-3)
     calm, noisy = Scenario(seed=5), Scenario(seed=5, start=noise)
     errors = np.array(
@@ -102,12 +112,12 @@ def test_noise_of_rates_gains_and_angles_is_independent(joints):
 @pytest.mark.parametrize(
     "name", [name for name in shipped_scenarios() if isinstance(load_scenario(name).controller, ThesisController)]
 )
-def test_shipped_gaits_are_reachable(name):
+def test_shipped_gaits_are_reachable(name: str) -> None:
     require_thesis_reachable(load_scenario(name))
 
 
 @pytest.mark.parametrize("step_length", [0.4, 0.5, 0.6])
-def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length, skeleton):
+def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length: float, skeleton: Skeleton) -> None:
     least = minimum_offset(step_length, skeleton.leg_length)
     overrides = {
         "controller.thesis.gait.path.step_length": str(step_length),
@@ -117,7 +127,7 @@ def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length, sk
         require_thesis_reachable(load_scenario("thesis", overrides))
 
 
-def test_taller_body_reaches_with_an_offset_that_the_reference_needs_too():
+def test_taller_body_reaches_with_an_offset_that_the_reference_needs_too() -> None:
     # E32: a longer leg needs less of an offset for the same step.
     overrides = {
         "controller.thesis.gait.path.offset": "0.0355",

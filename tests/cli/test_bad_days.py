@@ -5,12 +5,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from pydrake.systems.framework import Context
 
 from humanwalk.cli.walk import _write_or_rescue
+from humanwalk.control.pd_control import PdLaw
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, claimed, new_run_folder, require_room
@@ -22,7 +27,7 @@ THREE = {SCENARIO, SIGNALS, SUMMARY}
 WALK = "from humanwalk.cli.main import main; main()"
 
 
-def start(folder, *more, before="", **environment):
+def start(folder: Path, *more: str, before: str = "", **environment: Any) -> subprocess.Popen[str]:
     """The command line in a process of its own, walking into `folder`/run."""
     return subprocess.Popen(
         [sys.executable, "-c", before + WALK, "walk", "--no-replay", "--no-plots", "-o", "run", *more],
@@ -34,7 +39,7 @@ def start(folder, *more, before="", **environment):
     )
 
 
-def wait_for(path, process, limit=120.0):
+def wait_for(path: Path, process: subprocess.Popen[str], limit: float = 120.0) -> None:
     end = time.monotonic() + limit
     while not path.exists():
         assert process.poll() is None, process.stderr.read()
@@ -42,7 +47,7 @@ def wait_for(path, process, limit=120.0):
         time.sleep(0.02)
 
 
-def names(folder):
+def names(folder: Path) -> set[str] | set[Any]:
     """Files that are seen; one that is being written is hidden."""
     return {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
 
@@ -50,7 +55,7 @@ def names(folder):
 # Killed, stopped, twice.
 
 
-def test_killed_run_leaves_its_last_checkpoint(tmp_path):
+def test_killed_run_leaves_its_last_checkpoint(tmp_path: Path) -> None:
     process = start(tmp_path, "--duration", "600", "--checkpoint", "0.5")
     try:
         wait_for(tmp_path / "run" / SUMMARY, process)
@@ -68,7 +73,7 @@ def test_killed_run_leaves_its_last_checkpoint(tmp_path):
         new_run_folder(tmp_path / "run", "thesis")
 
 
-def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path):
+def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path: Path) -> None:
     process = start(tmp_path, "--duration", "600")
     try:
         wait_for(tmp_path / "run", process)
@@ -85,7 +90,7 @@ def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_stopped_run_keeps_everything_until_then(tmp_path, number):
+def test_stopped_run_keeps_everything_until_then(tmp_path: Path, number: Any) -> None:
     process = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
     try:
         wait_for(tmp_path / "run" / SUMMARY, process)
@@ -101,7 +106,7 @@ def test_stopped_run_keeps_everything_until_then(tmp_path, number):
     assert names(run.path) == THREE
 
 
-def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
+def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path: Path) -> None:
     """As with `humanwalk walk 2>&1 | head -1`."""
     process = subprocess.Popen(
         [sys.executable, "-c", WALK, "walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run"],
@@ -114,7 +119,7 @@ def test_nobody_who_listens_any_more_does_not_cost_the_run(tmp_path):
     assert Run.open(tmp_path / "run").summary["end"] == "completed"
 
 
-def humanwalk(folder, redirected, *arguments):
+def humanwalk(folder: Path, redirected: Any, *arguments: Any) -> Any:
     """Exit code and messages of the command line in a shell that redirects its streams."""
     command = f'"$0" -c "$1" {" ".join(arguments)} {redirected}'
     done = subprocess.run(["sh", "-c", command, sys.executable, WALK], cwd=folder, capture_output=True, text=True)
@@ -126,14 +131,14 @@ QUICK = ("walk", "--duration", "0.1", "--no-replay", "--no-plots", "-o", "run")
 
 @pytest.mark.parametrize("redirected", ["2>/dev/full", "2>&-", ">&- 2>&-", "<&- >/dev/full"])
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
-def test_messages_that_cannot_be_written_do_not_cost_the_run(tmp_path, redirected):
+def test_messages_that_cannot_be_written_do_not_cost_the_run(tmp_path: Path, redirected: Any) -> None:
     code, errors = humanwalk(tmp_path, redirected, *QUICK)
     assert code == 0, errors
     assert Run.open(tmp_path / "run").summary["end"] == "completed"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system")
-def test_results_that_cannot_be_written_are_one_line(tmp_path):
+def test_results_that_cannot_be_written_are_one_line(tmp_path: Path) -> None:
     code, errors = humanwalk(tmp_path, ">/dev/full", "scenarios")
     assert code == 2
     assert errors.splitlines() == ["humanwalk: standard output: No space left on device"]
@@ -141,7 +146,7 @@ def test_results_that_cannot_be_written_are_one_line(tmp_path):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
 @pytest.mark.parametrize("seed", range(3))
-def test_run_that_is_ended_at_a_random_time_leaves_whole_files_or_none(tmp_path, number, seed):
+def test_run_that_is_ended_at_a_random_time_leaves_whole_files_or_none(tmp_path: Path, number: Any, seed: int) -> None:
     process = start(tmp_path, "--duration", "0.5", "--checkpoint", "0.05")
     try:
         wait_for(tmp_path / "run", process)
@@ -162,7 +167,7 @@ def test_run_that_is_ended_at_a_random_time_leaves_whole_files_or_none(tmp_path,
         assert not [entry for entry in (tmp_path / "run").iterdir() if entry.name.startswith(".")]
 
 
-def test_two_runs_do_not_write_into_one_folder(tmp_path):
+def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
     first = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
     try:
         wait_for(tmp_path / "run", first)
@@ -177,14 +182,14 @@ def test_two_runs_do_not_write_into_one_folder(tmp_path):
         first.communicate()
 
 
-def test_claim_is_exclusive_and_ends(tmp_path):
+def test_claim_is_exclusive_and_ends(tmp_path: Path) -> None:
     with claimed(tmp_path), pytest.raises(ParameterError, match="another run writes into it"), claimed(tmp_path):
         pass
     with claimed(tmp_path):
         pass
 
 
-def test_folder_that_was_filled_before_the_claim_is_refused(tmp_path):
+def test_folder_that_was_filled_before_the_claim_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ParameterError, match="another run writes into it"), claimed(tmp_path):
         pass
@@ -193,13 +198,13 @@ def test_folder_that_was_filled_before_the_claim_is_refused(tmp_path):
 # Disks.
 
 
-def test_full_disk_is_found_before_the_simulation(tmp_path, monkeypatch):
+def test_full_disk_is_found_before_the_simulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.disk_usage", lambda path: type("Usage", (), {"free": 10_000_000})())
     with pytest.raises(ParameterError, match="10 MB are free"):
         require_room(tmp_path, load_scenario("thesis"))
 
 
-def test_longer_run_needs_more_room(tmp_path, monkeypatch):
+def test_longer_run_needs_more_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.disk_usage", lambda path: type("Usage", (), {"free": 100_000_000})())
     require_room(tmp_path, load_scenario("thesis"))
     with pytest.raises(ParameterError, match="make room"):
@@ -214,7 +219,9 @@ LIMIT = (
 
 
 @pytest.mark.parametrize(("limit", "left"), [(60_000, {SCENARIO}), (100, None)])
-def test_disk_that_fills_up_at_the_end_is_one_line_and_no_half_file(tmp_path, limit, left):
+def test_disk_that_fills_up_at_the_end_is_one_line_and_no_half_file(
+    tmp_path: Path, limit: int, left: set[str] | None
+) -> None:
     """A file-size limit stands for the full disk; the folder for temporary files is as full."""
     process = start(tmp_path, "--duration", "0.3", before=LIMIT.format(limit), TMPDIR=str(tmp_path))
     _, errors = process.communicate(timeout=120)
@@ -230,7 +237,7 @@ def test_disk_that_fills_up_at_the_end_is_one_line_and_no_half_file(tmp_path, li
     assert not [entry for entry in tmp_path.iterdir() if entry.name.startswith("humanwalk-")]
 
 
-def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path, monkeypatch):
+def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     outcome = simulate(load_scenario("thesis", {"duration": "0.02"}))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     with pytest.raises(ParameterError, match="the run is saved in") as raised:
@@ -240,10 +247,12 @@ def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path, monkeypat
     assert Run.open(rescue).signals.equals(outcome.signals)
 
 
-def test_full_disk_without_a_folder_for_temporary_files_is_one_line(tmp_path, monkeypatch):
+def test_full_disk_without_a_folder_for_temporary_files_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     outcome = simulate(load_scenario("thesis", {"duration": "0.02"}))
 
-    def none(**options):
+    def none(**options: Any) -> None:
         raise FileNotFoundError(2, "No usable temporary directory found")
 
     monkeypatch.setattr("tempfile.mkdtemp", none)
@@ -253,19 +262,21 @@ def test_full_disk_without_a_folder_for_temporary_files_is_one_line(tmp_path, mo
 
 @pytest.mark.parametrize("name", ["x" * 300, "\udcff", "a\0b"], ids=["too long", "not UTF-8", "NUL"])
 @pytest.mark.parametrize("wanted", [True, False])
-def test_name_that_files_cannot_have_is_refused_before_the_simulation(tmp_path, monkeypatch, name, wanted):
+def test_name_that_files_cannot_have_is_refused_before_the_simulation(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, wanted: Any
+) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ParameterError) as raised:
         new_run_folder(tmp_path / name if wanted else None, name)
     assert str(raised.value).isprintable()
 
 
-def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_path):
+def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_path: Path) -> None:
     """Of root, who may write anywhere else, the kernel's own folder is tried."""
     folder = tmp_path / "mine"
     folder.mkdir(mode=0o555)
     if os.geteuid() == 0:
-        folder = "/proc/humanwalk"
+        folder = "/proc/humanwalk"  # type: ignore[assignment]
     with pytest.raises(ParameterError) as raised:
         new_run_folder(type(tmp_path)(folder) / "run", "thesis")
     assert len(str(raised.value).splitlines()) == 1
@@ -275,26 +286,28 @@ def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_pat
 # Controllers and solvers.
 
 
-def broken_from(monkeypatch, begin, breaks):
+def broken_from(monkeypatch: pytest.MonkeyPatch, begin: float, breaks: Callable[..., Any]) -> None:
     """Let the inverse kinematics break from a time [s] on."""
     solve = inverse_kinematics_solver.InverseKinematicsSolver._solve
 
-    def broken(self, warm, context, discrete):
+    def broken(self: Any, warm: Any, context: Context, discrete: Any) -> Any:
         status = solve(self, warm, context, discrete)
         return breaks(self, context, discrete) if context.get_time() >= begin - 1e-9 else status
 
     monkeypatch.setattr(inverse_kinematics_solver.InverseKinematicsSolver, "_solve", broken)
 
 
-def not_a_number(self, context, discrete):
+def not_a_number(self: Any, context: Context, discrete: Any) -> None:
     discrete.set_value(0, np.full(discrete.value(0).size, np.nan))
 
 
-def throw(self, context, discrete):
+def throw(self: Any, context: Context, discrete: Any) -> None:
     raise RuntimeError("the solver gave up\nsecond line")
 
 
-def ended(monkeypatch, tmp_path, begin, breaks, law="implicit"):
+def ended(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, begin: float, breaks: Callable[..., Any], law: PdLaw = "implicit"
+) -> Any:
     broken_from(monkeypatch, begin, breaks)
     period = {"controller.thesis.control_period": "0.005"}
     outcome = simulate(load_scenario("thesis", {"duration": str(begin + 0.1), "actuation.pd.law": law} | period))
@@ -303,7 +316,9 @@ def ended(monkeypatch, tmp_path, begin, breaks, law="implicit"):
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
-def test_nan_in_the_controller_ends_the_run_and_keeps_what_was_before(monkeypatch, tmp_path, law):
+def test_nan_in_the_controller_ends_the_run_and_keeps_what_was_before(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, law: PdLaw
+) -> None:
     outcome, run = ended(monkeypatch, tmp_path, 0.05, not_a_number, law)
     assert outcome.end == "not a number" or outcome.end.startswith("solver failed")
     assert len(outcome.end.splitlines()) == 1
@@ -315,9 +330,11 @@ def test_nan_in_the_controller_ends_the_run_and_keeps_what_was_before(monkeypatc
 
 
 @pytest.mark.parametrize("phase", ["standing", "first landing", "left swing", "right swing"])
-def test_solver_that_fails_in_a_phase_of_the_gait_leaves_its_record(monkeypatch, tmp_path, phase):
+def test_solver_that_fails_in_a_phase_of_the_gait_leaves_its_record(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, phase: Any
+) -> None:
     scenario = load_scenario("thesis")
-    first = scenario.controller.walk(scenario.subject).start_time
+    first = scenario.controller.walk(scenario.subject).start_time  # type: ignore[attr-defined]
     stride = 0.5 / 0.6 / 1.4
     begin = {
         "standing": 0.05,
@@ -333,14 +350,14 @@ def test_solver_that_fails_in_a_phase_of_the_gait_leaves_its_record(monkeypatch,
     assert run.signals[TIME].to_numpy()[-1] <= begin
 
 
-def test_solver_that_fails_at_the_start_is_refused_and_leaves_nothing(monkeypatch):
+def test_solver_that_fails_at_the_start_is_refused_and_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     broken_from(monkeypatch, 0.0, throw)
     with pytest.raises(ParameterError, match="it ended at its start: solver failed: the solver gave up"):
         simulate(load_scenario("thesis", {"duration": "0.1"}))
 
 
-def test_error_of_another_kind_is_no_reason_to_lose_the_record(monkeypatch, tmp_path):
-    def singular(self, context, discrete):
+def test_error_of_another_kind_is_no_reason_to_lose_the_record(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def singular(self: Any, context: Context, discrete: Any) -> None:
         np.linalg.inv(np.zeros((2, 2)))
 
     outcome, run = ended(monkeypatch, tmp_path, 0.02, singular)
@@ -348,7 +365,7 @@ def test_error_of_another_kind_is_no_reason_to_lose_the_record(monkeypatch, tmp_
     assert run.signals.num_rows > 1
 
 
-def test_checkpoints_grow_and_are_runs(tmp_path):
+def test_checkpoints_grow_and_are_runs(tmp_path: Path) -> None:
     seen = []
     outcome = simulate(load_scenario("thesis", {"duration": "0.06"}), on_checkpoint=seen.append, checkpoint_period=0.0)
     rows = [checkpoint.signals.num_rows for checkpoint in seen]
@@ -363,7 +380,7 @@ def test_checkpoints_grow_and_are_runs(tmp_path):
 # Servers.
 
 
-def listening(pid):
+def listening(pid: Any) -> Any:
     """Local addresses of the sockets on which a process listens, as the kernel writes them: hexadecimal."""
     sockets = set()
     for entry in os.listdir(f"/proc/{pid}/fd"):
@@ -385,7 +402,7 @@ LOOPBACK = {"0100007F", "00000000000000000000000001000000"}
 
 
 @pytest.mark.skipif(not os.path.exists("/proc/net/tcp"), reason="needs Linux' list of sockets")
-def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
+def test_live_view_and_replay_listen_on_this_machine_only(tmp_path: Path) -> None:
     code = (
         "import threading; from humanwalk.view.replay import make_meshcat;"
         "from humanwalk.view.serve import replay_server; m = make_meshcat(live=True); s = replay_server(b'');"
@@ -414,11 +431,11 @@ def test_live_view_and_replay_listen_on_this_machine_only(tmp_path):
     ids=["standing", "weight shift", "single support", "double support", "not a number"],
 )
 def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(
-    monkeypatch, tmp_path, phase, begin, breaks
-):
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, phase: Any, begin: float, breaks: Callable[..., Any]
+) -> None:
     solve = whole_body_controller.WholeBodyController._update
 
-    def broken(self, context, discrete):
+    def broken(self: Any, context: Context, discrete: Any) -> Any:
         status = solve(self, context, discrete)
         if context.get_time() >= begin - 1e-9:
             breaks(self, context, discrete)

@@ -8,6 +8,8 @@ import json
 import os
 import resource
 import sys
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -34,7 +36,7 @@ LAUGHS = "_a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
 )
 
 
-def walk(path, folder):
+def walk(path: Any, folder: Any) -> Any:
     """Exit code and what was printed by walking 2 ms of a scenario file; what is raised but not caught fails."""
     saved, argv = sys.stderr, sys.argv
     sys.argv = ["humanwalk", "walk", str(path), "--no-replay", "--no-plots", "-o", str(folder), "--duration", "0.002"]
@@ -43,14 +45,14 @@ def walk(path, folder):
     try:
         main()
     except SystemExit as end:
-        code = end.code or 0
+        code = end.code or 0  # type: ignore[assignment]
     finally:
         printed, sys.stderr, sys.argv = sys.stderr.getvalue(), saved, argv
     return code, printed
 
 
 @st.composite
-def mutated(draw):
+def mutated(draw: Any) -> Any:
     """The thesis' scenario with one to three things done to it."""
     lines = list(LINES)
     for _ in range(draw(st.integers(1, 3))):
@@ -85,7 +87,7 @@ def mutated(draw):
 
 @settings(max_examples=200, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 @given(mutated())
-def test_mutated_scenario_is_run_or_refused_in_one_line(tmp_path_factory, text):
+def test_mutated_scenario_is_run_or_refused_in_one_line(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
     place = tmp_path_factory.mktemp("place")
     path, folder = place / "bad.yaml", place / "out"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
@@ -133,7 +135,7 @@ def test_mutated_scenario_is_run_or_refused_in_one_line(tmp_path_factory, text):
     ],
     ids=lambda text: f"{text[:24]!r}...{len(text)}",
 )
-def test_hostile_file_is_run_or_refused_in_one_line(tmp_path, monkeypatch, text):
+def test_hostile_file_is_run_or_refused_in_one_line(tmp_path: Any, monkeypatch: pytest.MonkeyPatch, text: Any) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.yaml").write_bytes(text)
     code, printed = walk("bad.yaml", "out")
@@ -147,17 +149,19 @@ def test_hostile_file_is_run_or_refused_in_one_line(tmp_path, monkeypatch, text)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < LARGEST_MEMORY_KB
 
 
-def test_no_field_of_a_scenario_says_where_to_write():
+def test_no_field_of_a_scenario_says_where_to_write() -> None:
     """The only texts without a list of choices are a description, and files that are read."""
 
-    def texts(kind):
+    def texts(kind: Any) -> Any:
         return {name for name, field in fields_of(kind) if field.type in (str, "str")}
 
     assert texts(Scenario) == {"description", "controller.recorded.angles", "controller.recorded.mapping"}
 
 
 @pytest.mark.parametrize("name", ["...yaml", "..yaml", "a b;c.yaml", "~.yaml", "-o.yaml"])
-def test_name_of_a_scenario_does_not_lead_out_of_runs(tmp_path, monkeypatch, name):
+def test_name_of_a_scenario_does_not_lead_out_of_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     (tmp_path / "in").mkdir()
     monkeypatch.chdir(tmp_path / "in")
     (tmp_path / "in" / name).write_text("duration: 0.002\n")
@@ -174,7 +178,7 @@ def test_name_of_a_scenario_does_not_lead_out_of_runs(tmp_path, monkeypatch, nam
 @pytest.mark.parametrize(
     "file", ["/etc/passwd", "/dev/zero", "/dev/zero.csv", "../x.mot", "\0.mot", "a" * 5000 + ".mot"]
 )
-def test_recording_that_is_none_is_refused(tmp_path, monkeypatch, file):
+def test_recording_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, file: str) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.yaml").write_text(f"follow: {{file: {json.dumps(file)}}}")
     code, printed = walk("bad.yaml", "out")

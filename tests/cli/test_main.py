@@ -7,6 +7,9 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -23,19 +26,19 @@ COMMANDS = {name.name or name.callback.__name__ for name in app.registered_comma
 
 
 @pytest.fixture
-def humanwalk(monkeypatch, capfd, tmp_path):
+def humanwalk(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> Iterator[Any]:
     """Runs the command line in an empty folder; gives exit code, output and errors."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
     level = logging.getLogger("drake").level
 
-    def run(*arguments):
+    def run(*arguments: object) -> Any:
         monkeypatch.setattr(sys, "argv", ["humanwalk", *map(str, arguments)])
         code = 0
         try:
             main()
         except SystemExit as end:
-            code = end.code or 0
+            code = end.code or 0  # type: ignore[assignment]
         captured = capfd.readouterr()
         return code, captured.out, captured.err
 
@@ -44,10 +47,10 @@ def humanwalk(monkeypatch, capfd, tmp_path):
 
 
 @pytest.fixture
-def refusal(humanwalk, tmp_path):
+def refusal(humanwalk: Any, tmp_path: Path) -> Any:
     """Runs a command that is refused; gives the one line."""
 
-    def run(*arguments):
+    def run(*arguments: object) -> Any:
         before = sorted(tmp_path.rglob("*"))
         code, out, err = humanwalk(*arguments)
         assert code == 2
@@ -63,7 +66,7 @@ def refusal(humanwalk, tmp_path):
 # Help and lists.
 
 
-def test_help_lists_every_command(humanwalk):
+def test_help_lists_every_command(humanwalk: Any) -> None:
     code, out, _ = humanwalk("--help")
     assert code == 0
     assert {"walk", "replay", "scenarios", "model", "diagram"} <= COMMANDS
@@ -71,14 +74,14 @@ def test_help_lists_every_command(humanwalk):
 
 
 @pytest.mark.parametrize("command", sorted(COMMANDS - {"scenarios"}))
-def test_help_of_every_command_has_an_example(humanwalk, command):
+def test_help_of_every_command_has_an_example(humanwalk: Any, command: Any) -> None:
     code, out, _ = humanwalk(command, "--help")
     assert code == 0
     assert f"humanwalk {command}" in out
     assert "Example" in out
 
 
-def test_commands_are_grouped_by_subject(humanwalk):
+def test_commands_are_grouped_by_subject(humanwalk: Any) -> None:
     _, out, _ = humanwalk("--help")
     groups = [line.strip("╭─╮ ") for line in out.splitlines() if line.startswith("╭")]
     assert groups == ["Options", "Models, diagrams and cost", "Show and analyze a run", "Simulate"]
@@ -88,13 +91,13 @@ def test_commands_are_grouped_by_subject(humanwalk):
     ("command", "units"),
     [("model", ["[kg]", "[m]"]), ("walk", ["[s]"]), ("video", ["time of the run [s]"]), ("bench", ["[s]"])],
 )
-def test_help_shows_units(humanwalk, command, units):
+def test_help_shows_units(humanwalk: Any, command: Any, units: Any) -> None:
     """Rich takes text in brackets for markup."""
     _, out, _ = humanwalk(command, "--help")
     assert [unit for unit in units if unit not in out] == []
 
 
-def test_scenarios_are_listed_with_their_descriptions(humanwalk):
+def test_scenarios_are_listed_with_their_descriptions(humanwalk: Any) -> None:
     code, out, _ = humanwalk("scenarios")
     assert code == 0
     assert "duration [s]" in out
@@ -104,7 +107,7 @@ def test_scenarios_are_listed_with_their_descriptions(humanwalk):
         assert f"{load_scenario(name).controller.commanded_speed or 0.0:g}" in line
 
 
-def test_installed_command_answers():
+def test_installed_command_answers() -> None:
     executable = shutil.which("humanwalk", path=os.path.dirname(sys.executable))
     assert executable
     done = subprocess.run([executable, "walk", "thesiss"], capture_output=True, text=True, check=False)
@@ -116,7 +119,7 @@ def test_installed_command_answers():
 # walk.
 
 
-def test_table_of_a_run_omits_what_it_does_not_have():
+def test_table_of_a_run_omits_what_it_does_not_have() -> None:
     figures = dict.fromkeys(("mean_speed_m_s", "steps", "pelvis_tracking_rms_m", "cost_of_transport", "qp_failures"))
     summary = figures | {
         "scenario": "a\x1b[31m",
@@ -145,13 +148,13 @@ def test_table_of_a_run_omits_what_it_does_not_have():
     assert table.title == r"a\x1b[31m: completed at 1.00 s"
 
 
-def test_messages_are_printed_without_control_characters(refusal):
+def test_messages_are_printed_without_control_characters(refusal: Any) -> None:
     line = refusal("walk", "no\nsuch\x1b]0;title\x07scenario")
     assert line.isprintable()
     assert len(refusal("walk", 5000 * "x")) < 2100
 
 
-def test_walk_writes_its_files(humanwalk, tmp_path):
+def test_walk_writes_its_files(humanwalk: Any, tmp_path: Path) -> None:
     code, out, err = humanwalk("walk", "--duration", "0.2", "--no-plots", "--no-replay", "-o", "walked")
     assert code == 0
     assert out == ""
@@ -185,7 +188,7 @@ def test_walk_writes_its_files(humanwalk, tmp_path):
     } <= run.summary.keys()
 
 
-def test_run_is_repeated_from_its_own_scenario(humanwalk, tmp_path):
+def test_run_is_repeated_from_its_own_scenario(humanwalk: Any, tmp_path: Path) -> None:
     quick = ("--no-plots", "--no-replay")
     humanwalk("walk", "--duration", "0.1", "--set", "start.joint_noise=0.01", "-o", "first", *quick)
     code, _, _ = humanwalk("walk", "first/scenario.yaml", "-o", "again", *quick)
@@ -196,22 +199,22 @@ def test_run_is_repeated_from_its_own_scenario(humanwalk, tmp_path):
     assert again.summary["scenario"] == "scenario"
 
 
-def test_walks_without_an_output_go_to_numbered_folders(humanwalk, tmp_path):
+def test_walks_without_an_output_go_to_numbered_folders(humanwalk: Any, tmp_path: Path) -> None:
     for _ in range(2):
         assert humanwalk("walk", "--duration", "0.01", "--no-plots", "--no-replay")[0] == 0
     assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["thesis", "thesis-2"]
 
 
-def test_overrides_reach_the_run(humanwalk, tmp_path):
+def test_overrides_reach_the_run(humanwalk: Any, tmp_path: Path) -> None:
     humanwalk(
         *("walk", "--duration", "0.01", "--no-plots", "--no-replay", "-o", "walked"),
         *("--set", "controller.thesis.gait.path.step_height=0.12", "--set", "contact=hydroelastic"),
     )
     scenario = Run.open(tmp_path / "walked").scenario
-    assert (scenario.controller.gait.path.step_height, scenario.contact) == (0.12, HydroelasticContact())
+    assert (scenario.controller.gait.path.step_height, scenario.contact) == (0.12, HydroelasticContact())  # type: ignore[attr-defined]
 
 
-def test_fall_has_an_exit_code_and_a_run(humanwalk, tmp_path):
+def test_fall_has_an_exit_code_and_a_run(humanwalk: Any, tmp_path: Path) -> None:
     code, _, err = humanwalk(
         *("walk", "--duration", "4", "--no-plots", "--no-replay", "-o", "fallen"),
         *("--set", "controller.thesis.balance.support.enabled=false"),
@@ -223,10 +226,10 @@ def test_fall_has_an_exit_code_and_a_run(humanwalk, tmp_path):
     assert summary["fall_time_s"] == summary["duration_s"]
 
 
-def test_interrupted_walk_keeps_its_run(tmp_path):
+def test_interrupted_walk_keeps_its_run(tmp_path: Any) -> None:
     executable = shutil.which("humanwalk", path=os.path.dirname(sys.executable))
     command = [executable, "walk", "--duration", "600", "--no-plots", "--no-replay", "-o", "walked"]
-    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)  # type: ignore[arg-type]
     try:
         assert process.stderr.readline() == "thesis: walking 600 s\n"
         process.send_signal(signal.SIGINT)
@@ -262,37 +265,39 @@ def test_interrupted_walk_keeps_its_run(tmp_path):
     ids=str,
 )
 @pytest.mark.parametrize("output", [(), ("-o", "new/folder")], ids=["default", "output"])
-def test_invalid_walk_produces_one_line_and_leaves_no_file(refusal, arguments, said, output):
+def test_invalid_walk_produces_one_line_and_leaves_no_file(
+    refusal: Any, arguments: Any, said: Any, output: Any
+) -> None:
     assert said in refusal("walk", *arguments, *output, "--no-replay", "--no-plots")
 
 
-def test_nonempty_output_is_refused_and_unchanged(refusal, tmp_path):
+def test_nonempty_output_is_refused_and_unchanged(refusal: Any, tmp_path: Path) -> None:
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("years of work")
     assert "holds files already" in refusal("walk", "-o", "mine", "--no-replay")
     assert (tmp_path / "mine" / "thesis.txt").read_text() == "years of work"
 
 
-def test_empty_folder_that_was_there_stays_when_the_walk_is_refused(refusal, tmp_path):
+def test_empty_folder_that_was_there_stays_when_the_walk_is_refused(refusal: Any, tmp_path: Path) -> None:
     (tmp_path / "mine").mkdir()
     refusal("walk", "-o", "mine", "--no-replay", "--set", "controller.thesis.gait.path.offset=0.03")
 
 
 @pytest.mark.parametrize("output", ["file", "file/run", "/proc/humanwalk"])
-def test_output_that_cannot_be_written_is_refused(refusal, tmp_path, output):
+def test_output_that_cannot_be_written_is_refused(refusal: Any, tmp_path: Path, output: Any) -> None:
     (tmp_path / "file").write_text("x")
     if output.startswith("/proc") and not os.path.isdir("/proc"):
         pytest.skip("no /proc on this system")
     assert output in refusal("walk", "-o", output, "--no-replay", "--duration", "0.01")
 
 
-def test_invalid_yaml_is_refused(refusal, tmp_path):
+def test_invalid_yaml_is_refused(refusal: Any, tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("duration: 1\ngait: [1\n")
     assert "mine.yaml: not YAML at line" in refusal("walk", "mine.yaml")
 
 
 @pytest.mark.parametrize("command", ["replay", "plot"])
-def test_folder_without_run_is_refused(refusal, command):
+def test_folder_without_run_is_refused(refusal: Any, command: Any) -> None:
     assert "no run" in refusal(command, "none")
 
 
@@ -300,7 +305,7 @@ def test_folder_without_run_is_refused(refusal, command):
 
 
 @pytest.mark.slow
-def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_path):
+def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk: Any, tmp_path: Path) -> None:
     code, out, err = humanwalk("bench", "stand", "--duration", "0.02", "--repeats", "1", "-o", "new.json")
     assert code == 0
     assert "stand" in out
@@ -312,13 +317,13 @@ def test_bench_prints_a_table_and_writes_what_can_be_compared(humanwalk, tmp_pat
 
 
 @pytest.fixture
-def measured_until(monkeypatch):
+def measured_until(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Repeats of a benchmark that cost one second each, and an error instead of the one with that place."""
 
-    def set_(place, error):
+    def set_(place: Any, error: Any) -> None:
         repeats = iter(range(100))
 
-        def repeat(scenario, overrides):
+        def repeat(scenario: Any, overrides: Any) -> Any:
             if next(repeats) == place:
                 raise error
             turns = {name: [(1.0, 1.0)] for name in ("full", "unrecorded", "bare")}
@@ -329,7 +334,7 @@ def measured_until(monkeypatch):
     return set_
 
 
-def test_interrupted_bench_keeps_its_results(humanwalk, measured_until, tmp_path):
+def test_interrupted_bench_keeps_its_results(humanwalk: Any, measured_until: Any, tmp_path: Path) -> None:
     measured_until(3, KeyboardInterrupt())
     code, out, err = humanwalk("bench", "stand", "walk", "--repeats", "2", "-o", "new.json")
     assert code == 130
@@ -341,7 +346,9 @@ def test_interrupted_bench_keeps_its_results(humanwalk, measured_until, tmp_path
     assert "old has 3 of 4 repeats" in out
 
 
-def test_bench_interrupted_at_once_prints_that_nothing_was_measured(humanwalk, measured_until, tmp_path):
+def test_bench_interrupted_at_once_prints_that_nothing_was_measured(
+    humanwalk: Any, measured_until: Any, tmp_path: Path
+) -> None:
     measured_until(0, KeyboardInterrupt())
     code, _, err = humanwalk("bench", "stand", "-o", "new.json")
     assert code == 130
@@ -349,7 +356,7 @@ def test_bench_interrupted_at_once_prints_that_nothing_was_measured(humanwalk, m
     assert not (tmp_path / "new.json").exists()
 
 
-def test_failed_bench_keeps_previous_results(humanwalk, measured_until, tmp_path):
+def test_failed_bench_keeps_previous_results(humanwalk: Any, measured_until: Any, tmp_path: Path) -> None:
     measured_until(1, ParameterError("walk: fell; allowed: none"))
     code, _, err = humanwalk("bench", "stand", "walk", "-o", "new.json")
     assert code not in (0, 130)
@@ -357,11 +364,11 @@ def test_failed_bench_keeps_previous_results(humanwalk, measured_until, tmp_path
     assert list(read_result(tmp_path / "new.json").scenarios) == ["stand"]
 
 
-def test_bench_into_a_missing_folder_is_refused_before_it_measures(refusal):
+def test_bench_into_a_missing_folder_is_refused_before_it_measures(refusal: Any) -> None:
     assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
 
 
-def test_bench_compares_only_its_own_files(refusal, tmp_path):
+def test_bench_compares_only_its_own_files(refusal: Any, tmp_path: Path) -> None:
     (tmp_path / "other.json").write_text("{}")
     assert "other.json: not a result" in refusal("bench", "--compare", "other.json", "other.json")
 
@@ -369,7 +376,7 @@ def test_bench_compares_only_its_own_files(refusal, tmp_path):
 # model and diagram.
 
 
-def test_model_is_written_for_a_subject(humanwalk, tmp_path):
+def test_model_is_written_for_a_subject(humanwalk: Any, tmp_path: Path) -> None:
     from pydrake.multibody.parsing import Parser
     from pydrake.multibody.plant import MultibodyPlant
 
@@ -381,7 +388,7 @@ def test_model_is_written_for_a_subject(humanwalk, tmp_path):
     assert plant.num_actuators() == 42
 
 
-def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
+def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk: Any, tmp_path: Path) -> None:
     assert humanwalk("model", "-o", "human.xml")[0] == 0
     assert ElementTree.parse(tmp_path / "human.xml").getroot().tag == "mujoco"
 
@@ -395,11 +402,11 @@ def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk, tmp_path):
     ],
     ids=str,
 )
-def test_model_of_an_invalid_subject_is_refused(refusal, arguments, said):
+def test_model_of_an_invalid_subject_is_refused(refusal: Any, arguments: Any, said: Any) -> None:
     assert said in refusal("model", *arguments, "-o", "x.sdf")
 
 
-def test_model_in_a_missing_folder_is_refused(refusal):
+def test_model_in_a_missing_folder_is_refused(refusal: Any) -> None:
     assert "No such file or directory" in refusal("model", "-o", "none/x.sdf")
 
 
@@ -411,7 +418,7 @@ old_pydot = pytest.mark.filterwarnings("ignore:.*deprecated - use:DeprecationWar
 @needs_dot
 @old_pydot
 @pytest.mark.parametrize(("name", "start"), [("d.svg", b"<?xml"), ("d.png", b"\x89PNG"), ("d.PDF", b"%PDF")])
-def test_diagram_is_drawn(humanwalk, tmp_path, name, start):
+def test_diagram_is_drawn(humanwalk: Any, tmp_path: Path, name: str, start: Any) -> None:
     assert humanwalk("diagram", "-o", name)[0] == 0
     assert (tmp_path / name).read_bytes().startswith(start)
     assert [path.name for path in tmp_path.iterdir()] == [name]
@@ -419,7 +426,7 @@ def test_diagram_is_drawn(humanwalk, tmp_path, name, start):
 
 @needs_dot
 @old_pydot
-def test_diagram_shows_the_systems_of_its_scenario(humanwalk, tmp_path):
+def test_diagram_shows_the_systems_of_its_scenario(humanwalk: Any, tmp_path: Path) -> None:
     humanwalk("diagram", "-o", "d.svg", "--set", "controller.thesis.balance.upper_body.enabled=true")
     drawn = (tmp_path / "d.svg").read_text()
     for name in ("gait", "inverse_kinematics", "actuators", "plant", "support", "upper_body_balance"):
@@ -428,9 +435,9 @@ def test_diagram_shows_the_systems_of_its_scenario(humanwalk, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["d.jpg", "d", "d.svg.gz"])
-def test_diagram_of_an_unknown_format_is_refused(refusal, name):
+def test_diagram_of_an_unknown_format_is_refused(refusal: Any, name: str) -> None:
     assert "svg, png, pdf" in refusal("diagram", "-o", name)
 
 
-def test_diagram_of_an_unknown_scenario_is_refused(refusal):
+def test_diagram_of_an_unknown_scenario_is_refused(refusal: Any) -> None:
     assert "thesiss" in refusal("diagram", "thesiss", "-o", "d.svg")

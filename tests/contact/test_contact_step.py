@@ -1,5 +1,7 @@
 """The implicit step: kinematics of points, and the law that it evaluates."""
 
+from typing import Any
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,11 +9,13 @@ from hypothesis import strategies as st
 from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.contact_step import (
     ContactMemory,
+    Contacts,
     ContactStep,
     body_mobility,
     mobility_factor,
     point_jacobians,
 )
+from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import surface_axes
 
@@ -27,7 +31,16 @@ SPEEDS = st.floats(-1.0, 1.0)
 DEPTHS = st.floats(-1e-3, 1e-3)
 
 
-def step(depth, V, mobility=MOBILITY, h=1e-3, terrain=LEVEL, R_WS=None, origin=(0.0, 0.0, 0.0), steps=1):
+def step(
+    depth: float,
+    V: Any,
+    mobility: Array = MOBILITY,
+    h: Any = 1e-3,
+    terrain: Any = LEVEL,
+    R_WS: Any = None,
+    origin: Array | tuple[float, float, float] = (0.0, 0.0, 0.0),
+    steps: int = 1,
+) -> Contacts:
     """Contacts after some steps of a block on the terrain; depth and velocities in the surface frame at the origin."""
     R_WS = np.eye(3) if R_WS is None else R_WS
     p_WB = np.array([R_WS @ [0.0, 0.0, 0.05 - depth]]) + origin
@@ -41,7 +54,7 @@ def step(depth, V, mobility=MOBILITY, h=1e-3, terrain=LEVEL, R_WS=None, origin=(
 
 
 @given(seed=st.integers(0, 1000))
-def test_point_jacobians_give_the_velocity_of_a_rigid_body(seed):
+def test_point_jacobians_give_the_velocity_of_a_rigid_body(seed: int) -> None:
     random = np.random.default_rng(seed)
     r, V = random.normal(size=(2, 3, 3)), random.normal(size=(2, 6))
     R_SW = surface_axes(random.uniform(-1, 1, (2, 3, 3)) + np.array([0.0, 0.0, 2.0]))
@@ -50,7 +63,7 @@ def test_point_jacobians_give_the_velocity_of_a_rigid_body(seed):
 
 
 @given(seed=st.integers(0, 1000))
-def test_the_factor_of_a_mobility_has_a_column_for_each_degree_of_freedom(seed):
+def test_the_factor_of_a_mobility_has_a_column_for_each_degree_of_freedom(seed: int) -> None:
     """Two bodies that one joint connects: seven velocities."""
     random = np.random.default_rng(seed)
     J, inertia = random.normal(size=(12, 7)), np.diag(random.uniform(0.1, 10.0, 7))
@@ -61,7 +74,9 @@ def test_the_factor_of_a_mobility_has_a_column_for_each_degree_of_freedom(seed):
 
 
 @given(slope=SLOPES, cross_slope=SLOPES, depth=DEPTHS, spin=SPEEDS, speed=SPEEDS, sink=SPEEDS)
-def test_an_inclined_plane_acts_as_level_ground_rotated(slope, cross_slope, depth, spin, speed, sink):
+def test_an_inclined_plane_acts_as_level_ground_rotated(
+    slope: float, cross_slope: float, depth: float, spin: float, speed: float, sink: float
+) -> None:
     terrain, V = Plane(slope, cross_slope), [0.1, -spin, spin, speed, 0.2, -sink]
     R_WS = terrain.axes(np.zeros(2)).T
     level, inclined = step(depth, V, steps=3), step(depth, V, terrain=terrain, R_WS=R_WS, steps=3)
@@ -72,7 +87,9 @@ def test_an_inclined_plane_acts_as_level_ground_rotated(slope, cross_slope, dept
 
 
 @given(x=st.floats(-3.0, 3.0), y=st.floats(-3.0, 3.0), depth=st.floats(1e-4, 1e-3), speed=SPEEDS)
-def test_nearly_flat_ground_acts_as_its_tangent_plane(waves, x, y, depth, speed):
+def test_nearly_flat_ground_acts_as_its_tangent_plane(
+    waves: type[Any], x: float, y: float, depth: float, speed: float
+) -> None:
     """Curved by 1e-6 / m, that is 1e-8 m below the points."""
     terrain, xy = waves(amplitude=1e-6), np.array((x, y))
     V = [0.0, 0.0, 0.0, speed, 0.0, -0.1]
@@ -82,9 +99,9 @@ def test_nearly_flat_ground_acts_as_its_tangent_plane(waves, x, y, depth, speed)
     np.testing.assert_allclose(curved.f_S, level.f_S, rtol=1e-3, atol=1e-2)
 
 
-def test_each_point_has_the_friction_of_the_ground_below_it():
+def test_each_point_has_the_friction_of_the_ground_below_it() -> None:
     class Patches(Plane):
-        def friction(self, xy):
+        def friction(self, xy: Array) -> Array:
             return np.where(xy[..., 0] > 0.0, 0.2, 0.6)
 
     contacts = step(1e-4, [0, 0, 0, 3.0, 0, 0], terrain=Patches())
@@ -93,13 +110,13 @@ def test_each_point_has_the_friction_of_the_ground_below_it():
     np.testing.assert_allclose(f_t, (1.0 - LAW.averaging) * np.array((0.6, 0.6, 0.2, 0.2)) * f_n, rtol=1e-6)
 
 
-def test_without_mobility_the_law_is_explicit():
+def test_without_mobility_the_law_is_explicit() -> None:
     contacts = step(1e-4, [0, 0, 0, 0, 0, -0.01], np.zeros((6, 6)), h=1e-9)
     np.testing.assert_allclose(contacts.f_S[:, 2], 0.015 * (5e7 * 1e-4 + 4e5 * 0.01), rtol=1e-6)
 
 
 @given(slope=SLOPES, speed=SPEEDS)
-def test_the_spatial_force_on_a_body_is_that_of_its_points(slope, speed):
+def test_the_spatial_force_on_a_body_is_that_of_its_points(slope: float, speed: float) -> None:
     terrain = Plane(slope)
     contacts = step(1e-4, [0.1, 0, 0, speed, 0.1, -0.01], terrain=terrain, R_WS=terrain.axes(np.zeros(2)).T)
     p_WB = contacts.p_WQ.mean(axis=0) + terrain.axes(np.zeros(2))[2] * 0.05
@@ -108,7 +125,7 @@ def test_the_spatial_force_on_a_body_is_that_of_its_points(slope, speed):
 
 
 @given(speed=st.floats(0.0, 3.0), depth=DEPTHS, sink=SPEEDS)
-def test_friction_stays_in_its_cone_and_takes_energy(speed, depth, sink):
+def test_friction_stays_in_its_cone_and_takes_energy(speed: float, depth: float, sink: float) -> None:
     contacts = step(depth, [0, 0, 0, speed, 0, -sink])
     f_t, f_n = contacts.f_S[:, :2], contacts.f_S[:, 2]
     assert (f_n >= 0.0).all()
@@ -117,14 +134,14 @@ def test_friction_stays_in_its_cone_and_takes_energy(speed, depth, sink):
 
 
 @given(sink=st.floats(0.01, 2.0))
-def test_a_stiff_contact_stops_a_block_and_does_not_throw_it_back(sink):
+def test_a_stiff_contact_stops_a_block_and_does_not_throw_it_back(sink: float) -> None:
     """Explicitly, 4e5 N s/m3 on 0.06 m2 would change 10 kg by 2.4 times its velocity in a step."""
     contacts = step(1e-5, [0, 0, 0, 0, 0, -sink])
     after = -sink + 1e-3 * contacts.memory.F[5] / 10.0
     assert -sink < after <= 0.0
 
 
-def test_a_sticking_point_keeps_its_anchor_and_a_sliding_one_drags_it():
+def test_a_sticking_point_keeps_its_anchor_and_a_sliding_one_drags_it() -> None:
     held, sliding = (step(1e-3, [0, 0, 0, v, 0, 0], np.zeros((6, 6)), h=1e-3) for v in (0.0, 1.0))
     np.testing.assert_allclose(held.memory.anchor, held.p_WQ, atol=1e-12)
     # The spring is stretched to its limit at the end of the step, 1 mm ahead; the mean load begins at 0.

@@ -1,6 +1,9 @@
 """The legs collide with each other, and their capsules with nothing else."""
 
+from typing import Any
+
 import pytest
+from pydrake.systems.framework import Diagram
 
 from humanwalk.body.limbs import LEGS
 from humanwalk.diagrams.walker import make_diagram
@@ -13,7 +16,7 @@ SIDE_OF = {body: side for side, leg in LEGS.items() for body in (leg.thigh, leg.
 """Bodies with capsules."""
 
 
-def pairs(diagram, **angles):
+def pairs(diagram: Diagram, **angles: Any) -> set[frozenset[str]] | set[Any]:
     """The bodies that touch each other in a posture, without the ground."""
     plant = diagram.GetSubsystemByName("plant")
     context = diagram.CreateDefaultContext()
@@ -27,29 +30,29 @@ def pairs(diagram, **angles):
     return {pair for pair in found if not any(name.lower().startswith("world") for name in pair)}
 
 
-def walker(**overrides):
+def walker(**overrides: Any) -> Diagram:
     return make_diagram(load_scenario("stand", overrides))
 
 
 @pytest.fixture(scope="module")
-def diagram():
+def diagram() -> Diagram:
     return walker()
 
 
-def test_standing_legs_do_not_touch(diagram):
+def test_standing_legs_do_not_touch(diagram: Diagram) -> None:
     assert pairs(diagram) == set()
 
 
-def test_legs_that_cross_touch(diagram):
+def test_legs_that_cross_touch(diagram: Diagram) -> None:
     crossed = pairs(diagram, **CROSSED)
     assert crossed
     assert all({SIDE_OF[body] for body in pair} == {"Right", "Left"} for pair in crossed)
 
 
-def test_a_bent_leg_does_not_touch_itself(diagram):
+def test_a_bent_leg_does_not_touch_itself(diagram: Diagram) -> None:
     assert pairs(diagram, **{LEGS["Right"].knee: 2.2, LEGS["Right"].hip_flexion: 1.2}) == set()
 
 
-def test_without_leg_contact_the_legs_pass_through_each_other():
+def test_without_leg_contact_the_legs_pass_through_each_other() -> None:
     ghost = walker(**{"contact.point.leg_contact": "false"})
     assert pairs(ghost, **CROSSED) == set()

@@ -1,6 +1,7 @@
 """Inverse kinematics of a leg: poses of forward kinematics are recovered; poses out of reach give the nearest one."""
 
 import dataclasses
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -8,14 +9,19 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import (
     ROW_WEIGHTS,
     SINGULAR_VALUE_FLOOR,
     InverseKinematicsParameters,
+    InverseKinematicsSolution,
+    LegKinematics,
     joint_velocity,
     pose_error,
     solve_inverse_kinematics,
 )
+from humanwalk.numerics import Array
+from humanwalk.sides import Side
 
 SIDES = ("Right", "Left")
 DEFAULT = InverseKinematicsParameters()
@@ -32,24 +38,29 @@ fractions = st.tuples(*[st.floats(INSET, 1 - INSET)] * 7).map(np.array)
 signs = st.tuples(*[st.floats(-0.2, 0.2)] * 7).map(np.array)
 
 
-def within_range(leg, fractions):
+def within_range(leg: LegKinematics, fractions: Array) -> Array:
     return leg.lower + fractions * (leg.upper - leg.lower)
 
 
-def distances(leg, theta, X_PS):
+def distances(leg: LegKinematics, theta: Array, X_PS: RigidTransform) -> tuple[float, float]:
     """Rotation [rad] and distance [m] between the sole and a pose."""
     error = pose_error(leg.X_PS(theta), X_PS)
     return np.linalg.norm(error[:3]), np.linalg.norm(error[3:])
 
 
-def assert_consistent(leg, solution, X_PS, parameters=DEFAULT):
+def assert_consistent(
+    leg: LegKinematics,
+    solution: InverseKinematicsSolution,
+    X_PS: RigidTransform,
+    parameters: InverseKinematicsParameters = DEFAULT,
+) -> None:
     """For any target the angles are in range, and residual and convergence are reported correctly."""
     assert np.all((leg.lower <= solution.theta) & (solution.theta <= leg.upper))
     assert solution.residual == pytest.approx(np.linalg.norm(pose_error(leg.X_PS(solution.theta), X_PS)), abs=1e-12)
     assert solution.converged == (solution.residual <= parameters.tolerance)
 
 
-def mirrored(X):
+def mirrored(X: RigidTransform) -> RigidTransform:
     """The same pose in a mirror across the sagittal plane."""
     M = np.diag([1.0, -1.0, 1.0])
     return RigidTransform(RotationMatrix(M @ X.rotation().matrix() @ M), M @ X.translation())
@@ -61,7 +72,9 @@ def mirrored(X):
 @pytest.mark.parametrize("side", SIDES)
 @settings(max_examples=100)
 @given(fractions=fractions)
-def test_any_reachable_pose_is_found_from_standing(legs, side, fractions):
+def test_any_reachable_pose_is_found_from_standing(
+    legs: dict[Side, LegKinematics], side: Side, fractions: Array
+) -> None:
     leg = legs[side]
     X_PS = leg.X_PS(within_range(leg, fractions))
     solution = solve_inverse_kinematics(leg, X_PS, STRAIGHT)
@@ -74,7 +87,9 @@ def test_any_reachable_pose_is_found_from_standing(legs, side, fractions):
 @pytest.mark.parametrize("side", SIDES)
 @settings(max_examples=100)
 @given(fractions=fractions, away=signs)
-def test_any_reachable_pose_is_found_from_nearby(legs, side, fractions, away):
+def test_any_reachable_pose_is_found_from_nearby(
+    legs: dict[Side, LegKinematics], side: Side, fractions: Array, away: Array
+) -> None:
     leg = legs[side]
     theta = within_range(leg, fractions)
     solution = solve_inverse_kinematics(leg, leg.X_PS(theta), theta + away)
@@ -84,7 +99,9 @@ def test_any_reachable_pose_is_found_from_nearby(legs, side, fractions, away):
 
 @settings(max_examples=25)
 @given(side=sides, fractions=fractions, away=signs)
-def test_numeric_jacobian_leads_to_the_analytic_solution(legs, side, fractions, away):
+def test_numeric_jacobian_leads_to_the_analytic_solution(
+    legs: dict[Side, LegKinematics], side: Side, fractions: Array, away: Array
+) -> None:
     leg = legs[side]
     theta = within_range(leg, fractions)
     analytic, numeric = (
@@ -98,7 +115,7 @@ def test_numeric_jacobian_leads_to_the_analytic_solution(legs, side, fractions, 
 
 @settings(max_examples=50)
 @given(side=sides, fractions=fractions)
-def test_numeric_jacobian_equals_the_analytic(legs, side, fractions):
+def test_numeric_jacobian_equals_the_analytic(legs: dict[Side, LegKinematics], side: Side, fractions: Array) -> None:
     leg = legs[side]
     theta = within_range(leg, fractions)
     np.testing.assert_allclose(leg.jacobian(theta, "numeric"), leg.jacobian(theta, "analytic"), atol=1e-6)
@@ -106,7 +123,7 @@ def test_numeric_jacobian_equals_the_analytic(legs, side, fractions):
 
 @settings(max_examples=25)
 @given(fractions=fractions, away=signs)
-def test_mirrored_legs_have_mirrored_solutions(legs, fractions, away):
+def test_mirrored_legs_have_mirrored_solutions(legs: dict[Side, LegKinematics], fractions: Array, away: Array) -> None:
     """Joint axes are mirrored in the model, so equal angles are mirrored postures."""
     right, left = legs["Right"], legs["Left"]
     theta = within_range(right, fractions)
@@ -117,7 +134,7 @@ def test_mirrored_legs_have_mirrored_solutions(legs, fractions, away):
     np.testing.assert_allclose(solutions[0].theta, solutions[1].theta, atol=1e-5)
 
 
-def test_near_the_target_a_step_squares_the_residual(legs):
+def test_near_the_target_a_step_squares_the_residual(legs: dict[Side, LegKinematics]) -> None:
     """Newton's method: two steps from 0.02 rad away."""
     leg = legs["Right"]
     solution = solve_inverse_kinematics(leg, leg.X_PS(BENT), BENT + 0.02)
@@ -125,7 +142,7 @@ def test_near_the_target_a_step_squares_the_residual(legs):
     assert solution.iterations <= 4
 
 
-def test_a_pose_that_is_already_reached_takes_no_step(legs):
+def test_a_pose_that_is_already_reached_takes_no_step(legs: dict[Side, LegKinematics]) -> None:
     leg = legs["Left"]
     solution = solve_inverse_kinematics(leg, leg.X_PS(BENT), BENT)
     np.testing.assert_allclose(solution.theta, BENT, rtol=0, atol=1e-15)
@@ -136,13 +153,13 @@ def test_a_pose_that_is_already_reached_takes_no_step(legs):
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_a_straight_leg_is_singular(legs, side):
+def test_a_straight_leg_is_singular(legs: dict[Side, LegKinematics], side: Side) -> None:
     assert np.linalg.matrix_rank(legs[side].jacobian(STRAIGHT), tol=1e-9) == 5
 
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("knee", [0.02, 0.1, 0.5, 1.0, 2.0])
-def test_a_straight_knee_bends_toward_a_nearer_target(legs, side, knee):
+def test_a_straight_knee_bends_toward_a_nearer_target(legs: dict[Side, LegKinematics], side: Side, knee: float) -> None:
     leg = legs[side]
     theta = STRAIGHT + np.array([0.5 * knee, 0, 0, knee, 0.1, 0, 0])
     solution = solve_inverse_kinematics(leg, leg.X_PS(theta), STRAIGHT)
@@ -152,7 +169,7 @@ def test_a_straight_knee_bends_toward_a_nearer_target(legs, side, knee):
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("knee", [0.0, 0.02, 0.5, 1.5])
-def test_a_fully_stretched_target_is_reached(legs, side, knee):
+def test_a_fully_stretched_target_is_reached(legs: dict[Side, LegKinematics], side: Side, knee: float) -> None:
     leg = legs[side]
     solution = solve_inverse_kinematics(leg, leg.X_PS(STRAIGHT), STRAIGHT + np.array([0.5 * knee, 0, 0, knee, 0, 0, 0]))
     assert solution.residual < 1e-5
@@ -166,7 +183,9 @@ def test_a_fully_stretched_target_is_reached(legs, side, knee):
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("guess", [STRAIGHT, BENT], ids=["straight", "bent"])
 @pytest.mark.parametrize("swing", [0.0, 0.3, -0.3])
-def test_a_target_ten_centimeters_out_of_reach_gives_the_nearest_pose(legs, skeleton, side, guess, swing):
+def test_a_target_ten_centimeters_out_of_reach_gives_the_nearest_pose(
+    legs: dict[Side, LegKinematics], skeleton: Skeleton, side: Side, guess: Array, swing: float
+) -> None:
     leg = legs[side]
     beyond = 0.1
     straight = leg.X_PS(np.array([swing, 0, 0, 0, -swing, 0, 0]))
@@ -198,14 +217,20 @@ def test_a_target_ten_centimeters_out_of_reach_gives_the_nearest_pose(legs, skel
     rpy=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
 )
 @example(side="Right", fractions=np.full(7, 0.5), p=(0.0, 0.0, 0.0), rpy=(0.0, 3.0, 0.0))
-def test_no_target_leads_out_of_the_joint_ranges(legs, side, fractions, p, rpy):
+def test_no_target_leads_out_of_the_joint_ranges(
+    legs: dict[Side, LegKinematics],
+    side: Side,
+    fractions: Array,
+    p: tuple[float, float, float],
+    rpy: tuple[float, float, float],
+) -> None:
     leg = legs[side]
     target = RigidTransform(RollPitchYaw(rpy), np.array(p))
     guess = within_range(leg, fractions)
     solution = solve_inverse_kinematics(leg, target, guess)
     assert_consistent(leg, solution, target)
 
-    def cost(theta):
+    def cost(theta: Array) -> float:
         return np.linalg.norm(ROW_WEIGHTS * pose_error(leg.X_PS(theta), target))
 
     assert cost(solution.theta) <= cost(guess) + 1e-12
@@ -213,7 +238,7 @@ def test_no_target_leads_out_of_the_joint_ranges(legs, side, fractions, p, rpy):
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("end", [-1, 1])
-def test_an_ankle_beyond_its_range_is_not_reached(legs, side, end):
+def test_an_ankle_beyond_its_range_is_not_reached(legs: dict[Side, LegKinematics], side: Side, end: int) -> None:
     """With a straight knee no other joint can replace the ankle's pitch."""
     leg = legs[side]
     theta = STRAIGHT.copy()
@@ -225,7 +250,7 @@ def test_an_ankle_beyond_its_range_is_not_reached(legs, side, end):
     assert solution.theta[ANKLE] == pytest.approx((leg.lower if end < 0 else leg.upper)[ANKLE], abs=1e-6)
 
 
-def test_a_guess_beyond_the_ranges_is_clipped(legs):
+def test_a_guess_beyond_the_ranges_is_clipped(legs: dict[Side, LegKinematics]) -> None:
     leg = legs["Right"]
     solution = solve_inverse_kinematics(leg, leg.X_PS(BENT), np.full(7, 10.0))
     assert_consistent(leg, solution, leg.X_PS(BENT))
@@ -234,14 +259,14 @@ def test_a_guess_beyond_the_ranges_is_clipped(legs):
 # ---- the seventh joint
 
 
-def closed_path(leg, samples=50):
+def closed_path(leg: LegKinematics, samples: int = 50) -> Iterator[RigidTransform]:
     """A closed path of the sole that is not in a sagittal plane."""
     for turn in 2 * np.pi * np.arange(1, samples + 1) / samples:
         wobble = np.array([0.3, 0.1, 0.2, 0.3, 0.1, 0.08, 0.1]) * np.sin(turn + np.arange(7.0))
         yield leg.X_PS(BENT + wobble)
 
 
-def angles_after_cycles(leg, cycles, parameters):
+def angles_after_cycles(leg: LegKinematics, cycles: int, parameters: InverseKinematicsParameters) -> Array:
     theta, ends = BENT, []
     for _ in range(cycles):
         for X_PS in closed_path(leg):
@@ -251,13 +276,13 @@ def angles_after_cycles(leg, cycles, parameters):
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_closed_paths_close_in_the_joints_too(legs, side):
+def test_closed_paths_close_in_the_joints_too(legs: dict[Side, LegKinematics], side: Side) -> None:
     """Seven joints for six rows: without the neutral pull the redundant motion drifts from cycle to cycle."""
     ends = angles_after_cycles(legs[side], 10, DEFAULT)
     np.testing.assert_allclose(ends[1:], np.broadcast_to(ends[1], (9, 7)), atol=1e-3)
 
 
-def test_without_the_neutral_pull_they_do_not_close(legs):
+def test_without_the_neutral_pull_they_do_not_close(legs: dict[Side, LegKinematics]) -> None:
     ends = angles_after_cycles(legs["Right"], 3, dataclasses.replace(DEFAULT, neutral_pull=0.0))
     assert np.abs(ends[2] - ends[1]).max() > 1e-3
 
@@ -271,13 +296,15 @@ def test_without_the_neutral_pull_they_do_not_close(legs):
     fractions=st.tuples(*[st.floats(0.2, 0.8)] * 7).map(np.array),
     V=st.tuples(*[st.floats(-1.0, 1.0)] * 6).map(np.array),
 )
-def test_joint_velocity_is_the_time_derivative_of_the_solutions_along_a_path(legs, side, fractions, V):
+def test_joint_velocity_is_the_time_derivative_of_the_solutions_along_a_path(
+    legs: dict[Side, LegKinematics], side: Side, fractions: Array, V: Array
+) -> None:
     leg, h = legs[side], 1e-4
     exact = InverseKinematicsParameters(tolerance=1e-10, neutral_pull=0.0)
     theta = within_range(leg, fractions)
     X_PS = leg.X_PS(theta)
 
-    def angles_at(t):
+    def angles_at(t: float) -> Array:
         turn = RotationMatrix(RollPitchYaw(t * V[:3]))
         X = RigidTransform(turn @ X_PS.rotation(), X_PS.translation() + t * V[3:])
         solution = solve_inverse_kinematics(leg, X, theta, exact)
@@ -290,7 +317,7 @@ def test_joint_velocity_is_the_time_derivative_of_the_solutions_along_a_path(leg
     np.testing.assert_allclose(quotient, velocity, atol=1e-3 * (1 + np.abs(velocity).max()))
 
 
-def test_joint_velocity_stays_finite_at_full_stretch(legs):
+def test_joint_velocity_stays_finite_at_full_stretch(legs: dict[Side, LegKinematics]) -> None:
     """No joint velocity shortens a straight leg."""
     for kind in ("analytic", "numeric"):
         velocity = joint_velocity(
@@ -300,7 +327,7 @@ def test_joint_velocity_stays_finite_at_full_stretch(legs):
 
 
 @pytest.mark.parametrize("V", [np.eye(6)[i] * s for i in range(6) for s in (-1, 1)])
-def test_joints_at_the_end_of_their_range_do_not_move_outward(legs, V):
+def test_joints_at_the_end_of_their_range_do_not_move_outward(legs: dict[Side, LegKinematics], V: Array) -> None:
     leg = legs["Right"]
     assert np.all(joint_velocity(leg, leg.upper, V) <= 0)
     assert np.all(joint_velocity(leg, leg.lower, V) >= 0)
@@ -310,7 +337,7 @@ def test_joints_at_the_end_of_their_range_do_not_move_outward(legs, V):
 
 
 @given(angle=st.floats(0.001, 3.1), p=st.tuples(*[st.floats(-1, 1)] * 3))
-def test_pose_error_is_rotation_vector_and_translation(angle, p):
+def test_pose_error_is_rotation_vector_and_translation(angle: float, p: tuple[float, float, float]) -> None:
     X_desired = RigidTransform(RollPitchYaw(0.3, -0.2, 0.1), [1.0, 0.0, 0.0])
     X = RigidTransform(
         RotationMatrix.MakeYRotation(angle) @ X_desired.rotation(), X_desired.translation() + np.array(p)
@@ -318,7 +345,7 @@ def test_pose_error_is_rotation_vector_and_translation(angle, p):
     np.testing.assert_allclose(pose_error(X, X_desired), [0, angle, 0, *p], atol=1e-7)
 
 
-def test_pose_error_does_not_jump_where_euler_angles_do():
+def test_pose_error_does_not_jump_where_euler_angles_do() -> None:
     """Thesis Eq 4-3 subtracts Euler angles, which differ by 2 pi here (erratum E13)."""
     before, after = (RigidTransform(RotationMatrix.MakeZRotation(np.pi + e)) for e in (-0.01, 0.01))
     np.testing.assert_allclose(pose_error(after, before), [0, 0, 0.02, 0, 0, 0], atol=1e-9)

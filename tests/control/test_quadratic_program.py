@@ -9,7 +9,7 @@ from humanwalk.control.quadratic_program import QuadraticProgram
 
 
 @given(st.integers(0, 10_000))
-def test_a_solution_is_feasible_and_no_feasible_direction_decreases_the_cost(seed):
+def test_a_solution_is_feasible_and_no_feasible_direction_decreases_the_cost(seed: int) -> None:
     random = np.random.default_rng(seed)
     root = random.normal(size=(4, 4))
     A, inside = random.normal(size=(4, 6)), random.normal(size=6)
@@ -35,7 +35,7 @@ def test_a_solution_is_feasible_and_no_feasible_direction_decreases_the_cost(see
 
 
 @pytest.mark.parametrize("field", ["H", "g", "A", "B", "lower", "upper"])
-def test_a_program_with_nan_has_no_solution(field):
+def test_a_program_with_nan_has_no_solution(field: str) -> None:
     program = QuadraticProgram(np.eye(3), np.ones(3), np.ones((1, 3)), np.ones((1, 2)), -np.ones(6), np.ones(6))
     assert program.solution() is not None
     assert program._replace(**{field: np.nan * getattr(program, field)}).solution() is None

@@ -1,15 +1,19 @@
 """The whole-body program: Newton's laws, limits of friction and torque, terrain, and QP failures."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
+from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.limbs import LEGS
-from humanwalk.control.body_dynamics import BodyDynamics
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import JOINT_LIMIT_STIFFNESS, Posture, WholeBodyQp
+from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
 from humanwalk.walking.motions import PlanarMotion
@@ -20,16 +24,16 @@ WEIGHT = 70.0 * 9.81
 
 
 @pytest.fixture(scope="module")
-def dynamics(plant):
+def dynamics(plant: MultibodyPlant) -> BodyDynamics:
     return BodyDynamics(plant)
 
 
 @pytest.fixture(scope="module")
-def qp(dynamics, skeleton):
+def qp(dynamics: BodyDynamics, skeleton: Skeleton) -> WholeBodyQp:
     return WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
 
 
-def body_at(dynamics, flexion=0.12, v=None):
+def body_at(dynamics: BodyDynamics, flexion: float = 0.12, v: Array | None = None) -> Dynamics:
     """Standing with bent knees, soles on the ground."""
     plant, joints = dynamics.plant, dynamics.joints
     q = plant.GetPositions(plant.CreateDefaultContext())
@@ -40,7 +44,13 @@ def body_at(dynamics, flexion=0.12, v=None):
     return dynamics.at(np.concatenate((q, np.zeros(plant.num_velocities()) if v is None else v)))
 
 
-def reference_for(body, zmp=None, right=None, left=None, ground_height=0.0):
+def reference_for(
+    body: Any,
+    zmp: complex | None = None,
+    right: FootReference | None = None,
+    left: None = None,
+    ground_height: float = 0.0,
+) -> WalkingReference:
     flat = FootReference(FootTask.FLAT, 1.0, 0.0)
     com = complex(body.com.position[0], body.com.position[1])
     return WalkingReference(
@@ -49,7 +59,7 @@ def reference_for(body, zmp=None, right=None, left=None, ground_height=0.0):
         zmp=com if zmp is None else zmp,
         dcm=com,
         dcm_reference=com,
-        com_height=(float(body.com.position[2]), 0.0, 0.0),
+        com_height=(float(body.com.position[2]), 0.0, 0.0),  # type: ignore[arg-type]
         ground_height=ground_height,
         right=right or flat,
         left=left or flat,
@@ -60,11 +70,11 @@ def reference_for(body, zmp=None, right=None, left=None, ground_height=0.0):
     )
 
 
-def rest(qp):
+def rest(qp: WholeBodyQp) -> Posture:
     return Posture(np.zeros(len(qp.names)), np.zeros(len(qp.names)))
 
 
-def newton_residual(body, solution, skeleton):
+def newton_residual(body: Dynamics, solution: Any, skeleton: Skeleton) -> Array:
     """M v' + h - J'f on the six rows of the floating base, from the contact points' own Jacobians."""
     total = body.M @ solution.acceleration + body.h
     for sphere, f in zip(contact_spheres(skeleton), solution.forces, strict=True):
@@ -73,25 +83,29 @@ def newton_residual(body, solution, skeleton):
     return total
 
 
-def test_in_standing_the_contact_forces_carry_the_weight(dynamics, qp):
+def test_in_standing_the_contact_forces_carry_the_weight(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
     assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=2.0)
 
 
-def test_the_floating_base_obeys_newton(dynamics, qp, skeleton):
+def test_the_floating_base_obeys_newton(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
     body = body_at(dynamics, v=np.random.default_rng(1).normal(0.0, 0.1, 48))
     solution = qp.solve(body, reference_for(body, zmp=0.05 + 0.02j), rest(qp))
     assert newton_residual(body, solution, skeleton)[:6] == pytest.approx(np.zeros(6), abs=0.05)
 
 
-def test_the_torques_are_the_inverse_dynamics_of_accelerations_and_forces(dynamics, qp, skeleton):
+def test_the_torques_are_the_inverse_dynamics_of_accelerations_and_forces(
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton
+) -> None:
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
     assert newton_residual(body, solution, skeleton)[6:] == pytest.approx(solution.torque, abs=1e-6)
 
 
-def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(dynamics, qp):
+def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(
+    dynamics: BodyDynamics, qp: WholeBodyQp
+) -> None:
     """At rest, with a small shift that needs hardly any angular momentum."""
     body = body_at(dynamics)
     zmp = complex(body.com.position[0] + 0.01, body.com.position[1])
@@ -101,7 +115,9 @@ def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(dynami
 
 
 @pytest.mark.parametrize("zmp", [0.1 + 0j, -0.3 + 0j, 0.5 + 0.5j, 1.0 - 1.0j])
-def test_forces_stay_in_the_friction_pyramid_and_torques_in_their_limits(dynamics, qp, zmp):
+def test_forces_stay_in_the_friction_pyramid_and_torques_in_their_limits(
+    dynamics: BodyDynamics, qp: WholeBodyQp, zmp: complex
+) -> None:
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body, zmp=zmp), rest(qp))
     f = solution.forces
@@ -110,11 +126,16 @@ def test_forces_stay_in_the_friction_pyramid_and_torques_in_their_limits(dynamic
     assert (np.abs(solution.torque) <= qp.limits + 1e-6).all()
 
 
-def test_a_foot_in_the_air_carries_no_force(dynamics, qp):
+def test_a_foot_in_the_air_carries_no_force(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     body = body_at(dynamics)
     ankle = body.frame(LEGS["Right"].hindfoot).p_WB
     swing = FootReference(
-        FootTask.SWING, 0.0, 0.0, PlanarMotion(complex(ankle[0], ankle[1])), (0.15, 0.0, 0.0), (0.0, 0.0, 0.0)
+        FootTask.SWING,
+        0.0,
+        0.0,
+        PlanarMotion(complex(ankle[0], ankle[1])),
+        (0.15, 0.0, 0.0),  # type: ignore[arg-type]
+        (0.0, 0.0, 0.0),  # type: ignore[arg-type]
     )
     solution = qp.solve(body, reference_for(body, zmp=0.02 + 0.0875j, right=swing), rest(qp))
     assert solution.forces[:6] == pytest.approx(np.zeros((6, 3)))
@@ -122,9 +143,9 @@ def test_a_foot_in_the_air_carries_no_force(dynamics, qp):
     assert lift[5] > 1.0
 
 
-def test_a_nearly_straight_knee_is_not_extended_further(dynamics, qp):
+def test_a_nearly_straight_knee_is_not_extended_further(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     body = body_at(dynamics, flexion=0.015)
-    high = replace(reference_for(body), com_height=(1.2, 0.0, 0.0))
+    high = replace(reference_for(body), com_height=(1.2, 0.0, 0.0))  # type: ignore[arg-type]
     solution = qp.solve(body, high, rest(qp))
     knee = qp.names.index(LEGS["Right"].knee)
     angle = body.q[dynamics.joints.q[dynamics.joints.names.index(LEGS["Right"].knee)]]
@@ -132,7 +153,7 @@ def test_a_nearly_straight_knee_is_not_extended_further(dynamics, qp):
     assert solution.acceleration[6 + knee] >= bound - 0.1
 
 
-def test_without_ground_under_the_feet_the_body_falls(dynamics, qp):
+def test_without_ground_under_the_feet_the_body_falls(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     q = body_at(dynamics).q.copy()
     q[6] += 0.3
     body = dynamics.at(np.concatenate((q, np.zeros(48))))
@@ -141,7 +162,9 @@ def test_without_ground_under_the_feet_the_body_falls(dynamics, qp):
     assert acceleration[2] == pytest.approx(-9.81, abs=0.01)
 
 
-def test_an_infeasible_program_has_no_solution_and_does_not_affect_the_next(dynamics, skeleton):
+def test_an_infeasible_program_has_no_solution_and_does_not_affect_the_next(
+    dynamics: BodyDynamics, skeleton: Skeleton
+) -> None:
     qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
     body = body_at(dynamics)
     broken = replace(body, h=body.h + 1e6)
@@ -158,17 +181,17 @@ class RaisedPlane(Plane):
 
     offset: float = 0.3
 
-    def height(self, xy):
+    def height(self, xy: Array) -> Array:
         return super().height(xy) + self.offset
 
 
-def raised(dynamics, body, offset):
+def raised(dynamics: BodyDynamics, body: Dynamics, offset: float) -> Dynamics:
     q = body.q.copy()
     q[6] += offset
     return dynamics.at(np.concatenate((q, body.v)))
 
 
-def test_ground_and_body_can_be_raised_together(dynamics, qp, skeleton):
+def test_ground_and_body_can_be_raised_together(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
     terrain = RaisedPlane()
     on_raised = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
     body = body_at(dynamics)
@@ -180,7 +203,7 @@ def test_ground_and_body_can_be_raised_together(dynamics, qp, skeleton):
     assert high.torque == pytest.approx(level.torque, abs=1e-4)
 
 
-def on_slope(dynamics, slope, foot_pitch=0.0):
+def on_slope(dynamics: BodyDynamics, slope: float, foot_pitch: float = 0.0) -> Dynamics:
     """Standing with bent knees on a plane with a slope along x, feet pitched relative to the plane.
 
     The pelvis is turned with the plane, so that both legs are as on level ground.
@@ -195,7 +218,9 @@ def on_slope(dynamics, slope, foot_pitch=0.0):
 
 
 @pytest.mark.parametrize("slope", [-0.2, -0.1, 0.1, 0.2])
-def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(dynamics, skeleton, slope):
+def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(
+    dynamics: BodyDynamics, skeleton: Skeleton, slope: float
+) -> None:
     terrain = Plane(slope=slope)
     qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
     body = on_slope(dynamics, slope)
@@ -209,7 +234,9 @@ def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(dynam
 
 @pytest.mark.parametrize("slope", [-0.1, 0.0, 0.1])
 @pytest.mark.parametrize("pitch", [-0.1, 0.1])
-def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(dynamics, skeleton, slope, pitch):
+def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(
+    dynamics: BodyDynamics, skeleton: Skeleton, slope: float, pitch: float
+) -> None:
     qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane(slope=slope))
     body = on_slope(dynamics, slope, pitch)
     landed = FootReference(FootTask.HEEL_STRIKE, 1.0, 0.0)
@@ -221,7 +248,7 @@ def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(dynami
     assert turning * pitch < -1.0
 
 
-def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics, skeleton):
+def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, skeleton: Skeleton) -> None:
     slope = 0.2
     terrain = Plane(slope=slope)
     qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)

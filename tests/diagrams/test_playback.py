@@ -5,22 +5,24 @@ import pytest
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Diagram
 
 from humanwalk.body import SIDES
+from humanwalk.body.joint_map import JointMap
 from humanwalk.choices import ThesisController
 from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.quantity import ParameterError
-from humanwalk.scenario import load_scenario, shipped_scenarios
+from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 
 
 @pytest.fixture(scope="module", params=["thesis", "comfortable"])
-def played(request):
+def played(request: pytest.FixtureRequest) -> tuple[Scenario, Diagram]:
     scenario = load_scenario(request.param)
     return scenario, make_playback(scenario)
 
 
-def test_shipped_scenarios_all_play():
+def test_shipped_scenarios_all_play() -> None:
     for name in shipped_scenarios():
         scenario = load_scenario(name)
         if isinstance(scenario.controller, ThesisController):
@@ -30,7 +32,7 @@ def test_shipped_scenarios_all_play():
                 make_playback(scenario)
 
 
-def test_ports(played):
+def test_ports(played: tuple[Scenario, Diagram]) -> None:
     _, playback = played
     ports = {port.get_name(): port.size() for port in map(playback.get_output_port, range(playback.num_output_ports()))}
     assert ports == {
@@ -46,20 +48,22 @@ def test_ports(played):
     assert playback.num_input_ports() == 0
 
 
-def test_no_plant_is_in_the_diagram(played):
+def test_no_plant_is_in_the_diagram(played: tuple[Scenario, Diagram]) -> None:
     _, playback = played
     assert not any(isinstance(system, MultibodyPlant) for system in playback.GetSystems())
     names = {system.get_name() for system in playback.GetSystems()}
     assert {"scene_graph", "gait", "arms", "inverse_kinematics", "playback_state"} <= names
 
 
-def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
+def test_pelvis_and_soles_are_where_the_gait_wants_them(
+    played: tuple[Scenario, Diagram], plant: MultibodyPlant
+) -> None:
     scenario, playback = played
-    gait, skeleton = scenario.controller.walk(scenario.subject), scenario.subject.skeleton
+    gait, skeleton = scenario.controller.walk(scenario.subject), scenario.subject.skeleton  # type: ignore[attr-defined]
     context = plant.CreateDefaultContext()
     simulator = Simulator(playback)
     # Samples of the inverse kinematics: between them the desired angles stand still.
-    for time in scenario.controller.control_period * np.arange(0, 400, 20):
+    for time in scenario.controller.control_period * np.arange(0, 400, 20):  # type: ignore[attr-defined]
         simulator.AdvanceTo(time)
         simulator.AdvancePendingEvents()
         root = simulator.get_context()
@@ -80,7 +84,7 @@ def test_pelvis_and_soles_are_where_the_gait_wants_them(played, plant):
             assert np.abs(pose_error(X_WS, wanted)).max() < 5e-5
 
 
-def test_joints_are_the_desired_ones(played, joints):
+def test_joints_are_the_desired_ones(played: tuple[Scenario, Diagram], joints: JointMap) -> None:
     _, playback = played
     simulator = Simulator(playback)
     simulator.AdvanceTo(0.3)
@@ -93,7 +97,7 @@ def test_joints_are_the_desired_ones(played, joints):
     assert (q[joints.q] <= joints.upper + 1e-9).all()
 
 
-def test_picture_shows_the_body_where_the_positions_are(played):
+def test_picture_shows_the_body_where_the_positions_are(played: tuple[Scenario, Diagram]) -> None:
     _, playback = played
     simulator = Simulator(playback)
     simulator.AdvanceTo(0.5)
@@ -105,6 +109,6 @@ def test_picture_shows_the_body_where_the_positions_are(played):
     np.testing.assert_allclose(query.GetPoseInWorld(pelvis).translation(), position, atol=1e-12)
 
 
-def test_unreachable_gait_is_refused():
+def test_unreachable_gait_is_refused() -> None:
     with pytest.raises(ParameterError, match=r"gait\.path\.offset"):
         make_playback(load_scenario("thesis", {"controller.thesis.gait.path.offset": "0.03"}))

@@ -1,15 +1,20 @@
 """The walker's diagram: its ports, its start, its variants, and the physics that no variant may change."""
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+from pydrake.systems.framework import Context, Diagram
 
 from humanwalk.body import HYDRO_SET, POINT_SET, SIDES
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.body.joint_map import JointMap
+from humanwalk.control.pd_control import PdLaw
 from humanwalk.diagrams.walker import make_diagram, make_walker
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario, load_scenario
 
@@ -72,13 +77,13 @@ class Walked:
         self.simulator.set_monitor(self._look)
         self.simulator.AdvanceTo(duration)
 
-    def _look(self, context):
+    def _look(self, context: Context) -> None:
         state = self.value("state", context)
         self.pelvis.append(np.append(context.get_time(), state[4:7]))
         self.torque.append(self.value("torque", context).copy())
         self.saturated.append(self.value("saturated", context).copy())
 
-    def value(self, port: str, context=None):
+    def value(self, port: str, context: Context | None = None) -> Array:
         return self.walker.GetOutputPort(port).Eval(context or self.simulator.get_context())
 
 
@@ -96,7 +101,7 @@ class Walked:
     ],
     ids=["thesis", "unsupported", "levels", "cenic", "explicit"],
 )
-def test_exported_ports_are_those_of_the_docstring(changes, more):
+def test_exported_ports_are_those_of_the_docstring(changes: tuple[dict[str, str], ...], more: dict[str, Any]) -> None:
     walker = make_walker(thesis(*changes))
     outputs = {port.get_name(): port.size() for port in map(walker.get_output_port, range(walker.num_output_ports()))}
     inputs = {port.get_name(): port.size() for port in map(walker.get_input_port, range(walker.num_input_ports()))}
@@ -106,7 +111,7 @@ def test_exported_ports_are_those_of_the_docstring(changes, more):
     assert [port for port in outputs if not re.search(rf"\b{port}\b", documented)] == []
 
 
-def test_feedforward_needs_no_connection_and_adds_torque_when_connected():
+def test_feedforward_needs_no_connection_and_adds_torque_when_connected() -> None:
     walker = make_walker(thesis(STAND))
     torques = []
     for extra in (None, 3.0):
@@ -123,7 +128,7 @@ def test_feedforward_needs_no_connection_and_adds_torque_when_connected():
 # The start.
 
 
-def standing(scenario):
+def standing(scenario: Scenario) -> tuple[Diagram, Context, MultibodyPlant, Context]:
     walker = make_walker(scenario)
     context = walker.CreateDefaultContext()
     plant = walker.GetSubsystemByName("plant")
@@ -133,7 +138,7 @@ def standing(scenario):
 @pytest.mark.parametrize(
     "subject", [{}, {"subject.mass": "55", "subject.stature": "1.6"}, {"subject.stature": "1.95"}], ids=str
 )
-def test_default_context_stands_on_the_ground(subject):
+def test_default_context_stands_on_the_ground(subject: dict[str, Any]) -> None:
     walker, context, plant, plant_context = standing(thesis(subject))
     soles = walker.GetOutputPort("soles").Eval(context)
     np.testing.assert_allclose(soles[[2, 5]], 0.0, atol=1e-3)
@@ -143,7 +148,7 @@ def test_default_context_stands_on_the_ground(subject):
 
 
 @pytest.mark.parametrize("lift", [-0.001, 0.05])
-def test_pelvis_lift_lifts_the_body(lift):
+def test_pelvis_lift_lifts_the_body(lift: float) -> None:
     walker, context, _, _ = standing(thesis({"start.pelvis_lift": str(lift)}))
     np.testing.assert_allclose(walker.GetOutputPort("soles").Eval(context)[[2, 5]], lift, atol=1e-6)
 
@@ -156,7 +161,7 @@ def test_pelvis_lift_lifts_the_body(lift):
         ("RightLegTibaMotion", "0.3", "did you mean RightLegTibiaMotion?"),
     ],
 )
-def test_start_that_the_body_cannot_take_is_refused(key, value, said):
+def test_start_that_the_body_cannot_take_is_refused(key: str, value: str, said: str) -> None:
     scenario = thesis({f"start.joint_angles.{key}": value})
     with pytest.raises(ParameterError) as raised:
         make_walker(scenario)
@@ -182,7 +187,7 @@ def test_start_that_the_body_cannot_take_is_refused(key, value, said):
     ],
     ids=str,
 )
-def test_gait_or_gains_that_cannot_work_are_refused(change, said):
+def test_gait_or_gains_that_cannot_work_are_refused(change: dict[str, str], said: tuple[str, ...]) -> None:
     scenario = thesis(change)
     with pytest.raises(ParameterError) as raised:
         make_walker(scenario)
@@ -191,7 +196,7 @@ def test_gait_or_gains_that_cannot_work_are_refused(change, said):
     assert len(message.splitlines()) == 1
 
 
-def test_the_offset_that_is_named_as_a_mend_works():
+def test_the_offset_that_is_named_as_a_mend_works() -> None:
     with pytest.raises(ParameterError) as raised:
         make_walker(thesis({"controller.thesis.gait.path.offset": "0.03"}))
     offset = str(raised.value).partition("set offset: ")[2].partition(",")[0]
@@ -212,21 +217,21 @@ def test_the_offset_that_is_named_as_a_mend_works():
         *["asperity", "asperity-implicit", "asperity-levels"],
     ],
 )
-def test_variant_walks_the_way_of_the_reference(changes):
+def test_variant_walks_the_way_of_the_reference(changes: tuple[dict[str, str], ...]) -> None:
     walked = Walked(thesis(*changes), 0.1)
     np.testing.assert_allclose(walked.pelvis[-1][1:3], walked.value("pelvis_reference")[4:6], atol=0.01)
     assert np.isfinite(walked.value("state")).all()
 
 
 @pytest.mark.parametrize("approximation", ["sap", "lagged", "similar"])
-def test_contact_approximation_is_the_plants(approximation):
+def test_contact_approximation_is_the_plants(approximation: str) -> None:
     walker = make_walker(thesis({"simulation.contact_approximation": approximation}))
     plant = walker.GetSubsystemByName("plant")
     assert plant.get_discrete_contact_approximation().name == f"k{approximation.capitalize()}"
 
 
 @pytest.mark.parametrize("controller", ["reference", "balanced"])
-def test_without_visuals_there_is_nothing_to_see_and_the_walk_is_the_same(controller):
+def test_without_visuals_there_is_nothing_to_see_and_the_walk_is_the_same(controller: str) -> None:
     states = []
     for visuals in (True, False):
         walker = make_diagram(load_scenario("walk" if controller == "balanced" else "thesis"), visuals=visuals)
@@ -236,13 +241,13 @@ def test_without_visuals_there_is_nothing_to_see_and_the_walk_is_the_same(contro
         simulator = Simulator(walker)
         simulator.AdvanceTo(0.05)
         states.append(walker.GetOutputPort("state").Eval(simulator.get_context()))
-    np.testing.assert_allclose(*states, atol=1e-9)
+    np.testing.assert_allclose(*states, atol=1e-9)  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(
     ("contact", "used", "unused"), [("point", POINT_SET, HYDRO_SET), ("hydroelastic", HYDRO_SET, POINT_SET)]
 )
-def test_only_the_chosen_contact_set_touches_the_ground(contact, used, unused):
+def test_only_the_chosen_contact_set_touches_the_ground(contact: str, used: str, unused: str) -> None:
     walked = Walked(thesis(STAND, {"contact": contact}), 0.05)
     inspector = walked.walker.GetSubsystemByName("scene_graph").model_inspector()
     results = walked.value("contact_results")
@@ -265,10 +270,10 @@ def test_only_the_chosen_contact_set_touches_the_ground(contact, used, unused):
     assert bool(surfaces) == (contact == "hydroelastic")
 
 
-def test_drake_collides_no_foot_that_the_asperity_law_carries():
+def test_drake_collides_no_foot_that_the_asperity_law_carries() -> None:
     walked = Walked(thesis(STAND, ASPERITY), 0.05)
     results = walked.value("contact_results")
-    assert (results.num_point_pair_contacts(), results.num_hydroelastic_contacts()) == (0, 0)
+    assert (results.num_point_pair_contacts(), results.num_hydroelastic_contacts()) == (0, 0)  # type: ignore[attr-defined]
     assert walked.value("foot_forces").reshape(2, 8)[:, 7].tolist() == [1.0, 1.0]
 
 
@@ -280,7 +285,7 @@ def test_drake_collides_no_foot_that_the_asperity_law_carries():
     ],
     ids=["cenic", "step"],
 )
-def test_asperity_that_cannot_be_simulated_is_refused(change, said):
+def test_asperity_that_cannot_be_simulated_is_refused(change: dict[str, str], said: tuple[str, ...]) -> None:
     with pytest.raises(ParameterError) as raised:
         make_walker(thesis(ASPERITY, change))
     message = str(raised.value)
@@ -288,7 +293,7 @@ def test_asperity_that_cannot_be_simulated_is_refused(change, said):
     assert len(message.splitlines()) == 1
 
 
-def test_the_step_that_is_named_as_a_mend_for_asperity_works():
+def test_the_step_that_is_named_as_a_mend_for_asperity_works() -> None:
     with pytest.raises(ParameterError) as raised:
         make_walker(thesis(ASPERITY, {"simulation.time_step": "0.003"}))
     step = str(raised.value).partition("steps up to ")[2].partition(" s")[0]
@@ -296,7 +301,7 @@ def test_the_step_that_is_named_as_a_mend_for_asperity_works():
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
-def test_effort_limits_bound_the_torque_only_where_the_scenario_has_them(law, joints):
+def test_effort_limits_bound_the_torque_only_where_the_scenario_has_them(law: PdLaw, joints: JointMap) -> None:
     excess = {}
     for kind in ("human", "none"):
         walked = Walked(thesis({"actuation.pd.effort_limits": kind, "actuation.pd.law": law}), 0.25)
@@ -310,7 +315,7 @@ def test_effort_limits_bound_the_torque_only_where_the_scenario_has_them(law, jo
     assert excess["none"] > 0.5
 
 
-def test_heavier_subject_is_heavier():
+def test_heavier_subject_is_heavier() -> None:
     plant = make_walker(thesis({"subject.mass": "90"})).GetSubsystemByName("plant")
     assert plant.CalcTotalMass(plant.CreateDefaultContext()) == pytest.approx(90.0, abs=1e-6)
 
@@ -318,14 +323,14 @@ def test_heavier_subject_is_heavier():
 # Determinism.
 
 
-def test_same_scenario_gives_the_same_bits_and_another_seed_another_walk():
+def test_same_scenario_gives_the_same_bits_and_another_seed_another_walk() -> None:
     noisy = {"start.joint_noise": "0.01"}
     first, again, other = (Walked(thesis(noisy, {"seed": seed}), 0.2).value("state").copy() for seed in ("1", "1", "2"))
     np.testing.assert_array_equal(first, again)
     assert np.abs(first - other).max() > 1e-4
 
 
-def test_seed_without_noise_changes_nothing():
+def test_seed_without_noise_changes_nothing() -> None:
     states = [make_walker(thesis({"seed": seed})).GetOutputPort("state") for seed in ("1", "2")]
     first, other = (port.Eval(port.get_system().CreateDefaultContext()) for port in states)
     np.testing.assert_array_equal(first, other)
@@ -339,12 +344,12 @@ def test_seed_without_noise_changes_nothing():
     params=[(STAND,), (STAND, HYDROELASTIC), (STAND, ASPERITY)],
     ids=["point", "hydroelastic", "asperity"],
 )
-def stood(request):
+def stood(request: pytest.FixtureRequest) -> Walked:
     """A second of standing."""
     return Walked(thesis(*request.param), 1.0)
 
 
-def test_standing_feet_and_support_carry_the_weight(stood):
+def test_standing_feet_and_support_carry_the_weight(stood: Walked) -> None:
     forces, support = stood.value("foot_forces").reshape(2, 8), stood.value("support_wrench")
     weight = 70.0 * GRAVITY
     assert forces[:, 2].sum() + support[5] == pytest.approx(weight, rel=0.01)
@@ -353,7 +358,7 @@ def test_standing_feet_and_support_carry_the_weight(stood):
     np.testing.assert_array_equal(forces[:, 7], 1.0)
 
 
-def test_standing_centre_of_pressure_is_inside_each_sole(stood):
+def test_standing_centre_of_pressure_is_inside_each_sole(stood: Walked) -> None:
     forces, soles = stood.value("foot_forces").reshape(2, 8), stood.value("soles").reshape(2, 3)
     back, front = SOLE_PARTS[0].x[0], SOLE_PARTS[-1].x[1]
     for foot, sole in zip(forces, soles, strict=True):
@@ -363,13 +368,13 @@ def test_standing_centre_of_pressure_is_inside_each_sole(stood):
         assert foot[5] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_standing_centre_of_mass_stays(stood):
+def test_standing_centre_of_mass_stays(stood: Walked) -> None:
     com = stood.value("com")
     np.testing.assert_allclose(com[1], 0.0, atol=1e-3)
     np.testing.assert_allclose(com[3:], 0.0, atol=0.01)
 
 
-def test_halving_the_time_step_hardly_moves_the_walk():
+def test_halving_the_time_step_hardly_moves_the_walk() -> None:
     coarse, fine = (
         np.array(Walked(thesis({"simulation.time_step": step}), 0.5).pelvis) for step in ("0.001", "0.0005")
     )

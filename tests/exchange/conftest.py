@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from humanwalk.measures.signals import TIME
+from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
@@ -14,7 +15,7 @@ PERIOD = 0.005
 PERIODS = {"recording.signal_period": str(PERIOD), "simulation.time_step": "0.001"}
 
 
-def made_up_signals(columns) -> pa.Table:
+def made_up_signals(columns: tuple[str, ...]) -> pa.Table:
     """Every column a wave of its own; a pelvis that turns; a right foot that lands twice, a left one never."""
     time = PERIOD * np.arange(ROWS)
     names = columns
@@ -36,11 +37,11 @@ def made_up_signals(columns) -> pa.Table:
 
 
 @pytest.fixture(scope="session")
-def signals(columns):
+def signals(columns: tuple[str, ...]) -> pa.Table:
     return made_up_signals(columns)
 
 
 @pytest.fixture(scope="session")
-def run(signals, tmp_path_factory):
+def run(signals: pa.Table, tmp_path_factory: pytest.TempPathFactory) -> Run:
     scenario = load_scenario("thesis", {"subject.stature": "1.68", "subject.mass": "61", **PERIODS})
     return Outcome(scenario, signals, "completed", 1.0).write(tmp_path_factory.mktemp("run"), "made up")

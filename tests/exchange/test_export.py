@@ -3,8 +3,11 @@
 import csv
 import shutil
 import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from scipy.io import loadmat
@@ -19,11 +22,13 @@ from humanwalk.exchange import FORMATS, export_run
 from humanwalk.exchange.motion import ground_force, marker_paths
 from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SIGNALS, Run
+from humanwalk.sides import Side
 
 
-def read_storage(path):
+def read_storage(path: Path) -> tuple[dict[str, str], dict[str, Array]]:
     """Header flags, and columns by name."""
     head, _, body = path.read_text().partition("endheader\n")
     flags = dict(line.split("=") for line in head.splitlines() if "=" in line)
@@ -35,7 +40,7 @@ def read_storage(path):
     return flags, dict(zip(names, data.T, strict=True))
 
 
-def read_trc(path):
+def read_trc(path: Path) -> tuple[dict[str, Array], Array, dict[str, str]]:
     """Marker paths in millimeters by name, the frames' times, and the header."""
     lines = path.read_text().split("\n")
     head = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=True))
@@ -49,12 +54,12 @@ def read_trc(path):
 
 
 @pytest.fixture(scope="module")
-def opensim_folder(run):
+def opensim_folder(run: Run) -> Path:
     export_run(run, "opensim")
     return run.path / "opensim"
 
 
-def test_files_are_those_of_the_format(run, opensim_folder):
+def test_files_are_those_of_the_format(run: Run, opensim_folder: Path) -> None:
     assert {path.name for path in opensim_folder.iterdir()} == {
         "angles.mot",
         "torques.sto",
@@ -64,7 +69,7 @@ def test_files_are_those_of_the_format(run, opensim_folder):
     }
 
 
-def test_angles_are_degrees_with_opensims_names_and_signs(opensim_folder, signals):
+def test_angles_are_degrees_with_opensims_names_and_signs(opensim_folder: Path, signals: pa.Table) -> None:
     flags, columns = read_storage(opensim_folder / "angles.mot")
     assert flags["inDegrees"] == "yes"
     np.testing.assert_allclose(columns["time"], signals[TIME].to_numpy(), atol=1e-12)
@@ -74,7 +79,7 @@ def test_angles_are_degrees_with_opensims_names_and_signs(opensim_folder, signal
         np.testing.assert_allclose(columns[coordinate], expected, rtol=1e-10, atol=1e-10)
 
 
-def test_signs_of_the_coordinates_are_those_of_the_motions():
+def test_signs_of_the_coordinates_are_those_of_the_motions() -> None:
     motions = {joint.name: joint.motion for joint in human().joints}
     for joint, (coordinate, factor) in COORDINATES.items():
         opposite = {"hip_adduction": "hip abduction", "arm_add": "shoulder abduction"}
@@ -84,7 +89,7 @@ def test_signs_of_the_coordinates_are_those_of_the_motions():
             assert motions[joint] == opposite[name]
 
 
-def test_back_is_the_sum_of_its_joints(opensim_folder, signals):
+def test_back_is_the_sum_of_its_joints(opensim_folder: Path, signals: pa.Table) -> None:
     _, columns = read_storage(opensim_folder / "angles.mot")
     spine = [joint for joints, _ in SPINE_COORDINATES.values() for joint in joints]
     assert len(spine) == len(set(spine)) == 10
@@ -93,7 +98,7 @@ def test_back_is_the_sum_of_its_joints(opensim_folder, signals):
         np.testing.assert_allclose(columns[coordinate], factor * np.rad2deg(total), rtol=1e-10, atol=1e-10)
 
 
-def test_pelvis_rotation_is_in_opensims_coordinates(opensim_folder, signals):
+def test_pelvis_rotation_is_in_opensims_coordinates(opensim_folder: Path, signals: pa.Table) -> None:
     _, columns = read_storage(opensim_folder / "angles.mot")
     turns = np.deg2rad([columns[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")]).T
     R_OP = Rotation.from_euler("ZXY", turns).as_matrix()
@@ -106,7 +111,7 @@ def test_pelvis_rotation_is_in_opensims_coordinates(opensim_folder, signals):
     assert columns["pelvis_rotation"][-1] == pytest.approx(np.rad2deg(2 * 0.4), abs=2)
 
 
-def test_opensims_world_is_x_forward_y_up_z_right():
+def test_opensims_world_is_x_forward_y_up_z_right() -> None:
     forward, left, up = np.eye(3)
     np.testing.assert_array_equal(R_OW @ forward, [1, 0, 0])
     np.testing.assert_array_equal(R_OW @ up, [0, 1, 0])
@@ -114,7 +119,7 @@ def test_opensims_world_is_x_forward_y_up_z_right():
     assert np.linalg.det(R_OW) == pytest.approx(1.0)
 
 
-def test_torques_are_newton_meters_of_every_joint(opensim_folder, signals):
+def test_torques_are_newton_meters_of_every_joint(opensim_folder: Path, signals: pa.Table) -> None:
     flags, columns = read_storage(opensim_folder / "torques.sto")
     assert flags["inDegrees"] == "no"
     assert len(columns) == 1 + 42
@@ -124,7 +129,7 @@ def test_torques_are_newton_meters_of_every_joint(opensim_folder, signals):
         np.testing.assert_allclose(columns[f"{coordinate}_moment"], expected, rtol=1e-10, atol=1e-10)
 
 
-def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
+def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder: Path, signals: pa.Table) -> None:
     """Angle and torque change their sign together."""
     _, angles = read_storage(opensim_folder / "angles.mot")
     _, torques = read_storage(opensim_folder / "torques.sto")
@@ -134,7 +139,7 @@ def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder, signals):
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_ground_force_is_always_finite_and_zero_when_unloaded(run, side):
+def test_ground_force_is_always_finite_and_zero_when_unloaded(run: Run, side: Side) -> None:
     load = ground_force(run, side)
     loaded = run.signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
     assert np.isfinite(np.column_stack((load.force, load.point, load.free_moment))).all()
@@ -142,7 +147,7 @@ def test_ground_force_is_always_finite_and_zero_when_unloaded(run, side):
     assert not load.free_moment[~loaded].any()
 
 
-def test_point_of_an_unloaded_foot_is_interpolated_to_touchdown(run):
+def test_point_of_an_unloaded_foot_is_interpolated_to_touchdown(run: Run) -> None:
     load = ground_force(run, "Right")
     loaded = run.signals["right_foot.loaded"].to_numpy() > 0.5
     x = load.point[:, 0]
@@ -152,7 +157,7 @@ def test_point_of_an_unloaded_foot_is_interpolated_to_touchdown(run):
     assert not ground_force(run, "Left").point.any()
 
 
-def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder, run):
+def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder: Path, run: Run) -> None:
     """The moment about the origin, which must not depend on how it is written."""
     _, columns = read_storage(opensim_folder / "ground_forces.mot")
     assert all(np.isfinite(column).all() for column in columns.values())
@@ -168,7 +173,7 @@ def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder, run):
         np.testing.assert_allclose(np.cross(point, force) + torque, expected, atol=1e-8)
 
 
-def test_external_loads_xml_names_existing_columns(opensim_folder):
+def test_external_loads_xml_names_existing_columns(opensim_folder: Any) -> None:
     root = ET.parse(opensim_folder / "external_loads.xml").getroot()
     _, columns = read_storage(opensim_folder / root.findtext(".//datafile"))
     forces = root.findall(".//ExternalForce")
@@ -179,7 +184,7 @@ def test_external_loads_xml_names_existing_columns(opensim_folder):
             assert all(f"{prefix}{axis}" in columns for axis in "xyz")
 
 
-def test_markers_are_millimeters_in_opensims_axes(opensim_folder, run, signals):
+def test_markers_are_millimeters_in_opensims_axes(opensim_folder: Path, run: Run, signals: pa.Table) -> None:
     paths, time, head = read_trc(opensim_folder / "markers.trc")
     assert head["Units"] == "mm"
     assert float(head["DataRate"]) == 200
@@ -188,7 +193,7 @@ def test_markers_are_millimeters_in_opensims_axes(opensim_folder, run, signals):
         np.testing.assert_allclose(paths[name], 1000 * path @ R_OW.T, atol=1e-5)
 
 
-def test_markers_keep_their_distances_on_a_body(run):
+def test_markers_keep_their_distances_on_a_body(run: Run) -> None:
     paths = marker_paths(run)
     skeleton = run.scenario.subject.skeleton
     assert list(paths) == [marker.name for marker in markers(skeleton)]
@@ -198,7 +203,7 @@ def test_markers_keep_their_distances_on_a_body(run):
         np.testing.assert_allclose(np.linalg.norm(paths[a] - paths[b], axis=1), expected, rtol=1e-9)
 
 
-def test_csv_keeps_every_number(run, signals):
+def test_csv_keeps_every_number(run: Run, signals: pa.Table) -> None:
     (path,) = export_run(run, "csv")
     with path.open() as file:
         names, *rows = csv.reader(file)
@@ -206,7 +211,7 @@ def test_csv_keeps_every_number(run, signals):
     np.testing.assert_array_equal(np.array(rows, dtype=float), matrix(signals, names))
 
 
-def test_mat_keeps_every_number(run, signals):
+def test_mat_keeps_every_number(run: Run, signals: pa.Table) -> None:
     (path,) = export_run(run, "mat")
     read = loadmat(path, simplify_cells=True)
     np.testing.assert_array_equal(read["signals"][TIME], signals[TIME].to_numpy())
@@ -220,19 +225,19 @@ def test_mat_keeps_every_number(run, signals):
     assert "stature: 1.68" in read["scenario"]
 
 
-def test_export_prints_its_files_and_writes_into_the_given_folder(run, tmp_path):
+def test_export_prints_its_files_and_writes_into_the_given_folder(run: Run, tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path / "out")])
     assert result.exit_code == 0, result.output
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["signals.csv"]
 
 
-def test_unknown_format_is_refused(run, tmp_path):
+def test_unknown_format_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="allowed: opensim, c3d, csv, mat"):
         export_run(run, "opensm", tmp_path)
     assert set(FORMATS) == {"opensim", "c3d", "csv", "mat"}
 
 
-def test_csv_has_no_cell_that_a_spreadsheet_executes(run, signals, tmp_path):
+def test_csv_has_no_cell_that_a_spreadsheet_executes(run: Run, signals: pa.Table, tmp_path: Path) -> None:
     """A spreadsheet takes text that begins with one of =+-@ for a formula; only numbers may be negative."""
     (path,) = export_run(run, "csv", tmp_path / "out")
     with path.open(encoding="utf-8", newline="") as file:

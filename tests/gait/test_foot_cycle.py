@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from humanwalk.gait.foot_cycle import (
     thesis_swing,
 )
 from humanwalk.gait.splines import CubicHermite
+from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import quintic_blend
 
 LAWS = ("thesis", "smooth")
@@ -36,14 +38,14 @@ paths = st.builds(
 few = settings(max_examples=30)
 
 
-def swing_points(path, n=1501):
+def swing_points(path: FootPathParameters, n: int = 1501) -> Array:
     share = np.linspace(0.0, 1.0, n)
     phases = path.duty_factor + share[:-1] * (1.0 - path.duty_factor)
     cycle = FootCycle(path)
     return np.array([*(cycle.position(phase) for phase in phases), (path.step_length, 0.0)])
 
 
-def assert_rises_once_and_falls_once(z, height):
+def assert_rises_once_and_falls_once(z: Array, height: float) -> None:
     assert z[0] == pytest.approx(0.0, abs=1e-9)
     assert z[-1] == pytest.approx(0.0, abs=1e-9)
     assert z.min() >= 0.0
@@ -56,7 +58,7 @@ def assert_rises_once_and_falls_once(z, height):
 
 @few
 @given(path=paths, share=st.floats(0.0, 1.0, exclude_max=True))
-def test_stance_is_a_straight_flat_line_at_constant_speed(path, share):
+def test_stance_is_a_straight_flat_line_at_constant_speed(path: FootPathParameters, share: float) -> None:
     cycle, phase = FootCycle(path), share * path.duty_factor
     x, z = cycle.position(phase)
     assert x == pytest.approx(path.step_length * (1.0 - share), abs=1e-12)
@@ -67,14 +69,14 @@ def test_stance_is_a_straight_flat_line_at_constant_speed(path, share):
 
 @few
 @given(path=paths)
-def test_swing_rises_once_to_the_step_height_and_falls_once(path):
+def test_swing_rises_once_to_the_step_height_and_falls_once(path: FootPathParameters) -> None:
     """The apex is H, not H + L/18 (E9, E26), for low and high steps (E28)."""
     assert_rises_once_and_falls_once(swing_points(path)[:, 1], path.step_height)
 
 
 @few
 @given(path=paths)
-def test_swing_reaches_only_a_little_beyond_stance(path):
+def test_swing_reaches_only_a_little_beyond_stance(path: FootPathParameters) -> None:
     x = swing_points(path)[:, 0] / path.step_length
     beyond = 0.025 if path.swing == "thesis" else 0.075
     assert -beyond < x.min() < 0.0
@@ -83,7 +85,7 @@ def test_swing_reaches_only_a_little_beyond_stance(path):
 
 @few
 @given(path=paths)
-def test_position_and_derivative_continue_over_lift_off_touchdown_and_the_whole_cycle(path):
+def test_position_and_derivative_continue_over_lift_off_touchdown_and_the_whole_cycle(path: FootPathParameters) -> None:
     cycle, step = FootCycle(path), 1e-9
     for phase in (0.0, path.duty_factor, 0.5 + 0.5 * path.duty_factor):
         before, after = phase - step, phase + step
@@ -95,7 +97,7 @@ def test_position_and_derivative_continue_over_lift_off_touchdown_and_the_whole_
 
 @few
 @given(path=paths, phase=st.floats(0.0, 1.0))
-def test_derivative_is_the_limit_of_differences(path, phase):
+def test_derivative_is_the_limit_of_differences(path: FootPathParameters, phase: float) -> None:
     cycle, h = FootCycle(path), 1e-7
     ahead, behind = np.array(cycle.position(phase + h)), np.array(cycle.position(phase - h))
     slope = np.array(cycle.derivative(phase))
@@ -105,7 +107,7 @@ def test_derivative_is_the_limit_of_differences(path, phase):
 
 @few
 @given(path=paths, drop=st.floats(0.0, 1.2))
-def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path, drop):
+def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path: FootPathParameters, drop: float) -> None:
     cycle = FootCycle(replace(path, toe_drop=drop))
     pitch = np.array([cycle.pitch(phase)[0] for phase in np.linspace(0.0, 1.0, 201)])
     in_stance = np.linspace(0.0, 1.0, 201) < path.duty_factor
@@ -117,7 +119,7 @@ def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path, drop)
 
 @few
 @given(path=paths)
-def test_feet_meet_and_leave_the_ground_without_slip(path):
+def test_feet_meet_and_leave_the_ground_without_slip(path: FootPathParameters) -> None:
     """E27: at both ends of swing the foot has the velocity of stance, which is zero over ground."""
     for curve, distance in (
         (FootCycle(path)._swing, (1.0 - path.duty_factor) * path.walked_stride),
@@ -129,7 +131,7 @@ def test_feet_meet_and_leave_the_ground_without_slip(path):
 
 @few
 @given(path=paths)
-def test_start_swing_goes_from_standing_to_touchdown(path):
+def test_start_swing_goes_from_standing_to_touchdown(path: FootPathParameters) -> None:
     curve = start_swing(path)
     points = np.array([curve.position(tau) for tau in np.linspace(0.0, 1.0, 1501)])
     np.testing.assert_allclose(points[0], [path.step_length / 2, 0.0], atol=1e-12)
@@ -142,7 +144,7 @@ def test_start_swing_goes_from_standing_to_touchdown(path):
 
 @few
 @given(path=paths, tau=st.lists(st.floats(0.0, 1.0), min_size=20, max_size=20))
-def test_the_table_is_within_a_micrometer_of_the_exact_law(path, tau):
+def test_the_table_is_within_a_micrometer_of_the_exact_law(path: FootPathParameters, tau: list[float]) -> None:
     law = thesis_swing if path.swing == "thesis" else smooth_swing
     x, z = np.array([0.0, 0.3, 0.7, 1.0]) * path.step_length, np.array([0, 1, 0.9, 0.0])
     z *= path.step_height
@@ -151,7 +153,7 @@ def test_the_table_is_within_a_micrometer_of_the_exact_law(path, tau):
     np.testing.assert_allclose([curve.position(t) for t in tau], exact, rtol=0, atol=1e-6)
 
 
-def test_thesis_swing_goes_through_the_points_of_appendix_a():
+def test_thesis_swing_goes_through_the_points_of_appendix_a() -> None:
     """At L 50, H 20 cm: x as printed, y scaled by 36/41 so that the apex is H (E9)."""
     code_cm = [
         (5, 6.666666666666667),
@@ -169,7 +171,7 @@ def test_thesis_swing_goes_through_the_points_of_appendix_a():
         assert np.linalg.norm(curve - point, axis=1).min() < 2e-5
 
 
-def test_thesis_swing_is_a_function_of_arc_length():
+def test_thesis_swing_is_a_function_of_arc_length() -> None:
     x, z = np.array([0.0, 0.25, 0.5]), np.array([0.0, 0.2, 0.0])
     tangents = np.array([[-0.125, 0.0], [0.25, 0.0], [-0.125, 0.0]])
     curve = ArcLength(CubicHermite(np.column_stack([x, z]), tangents))
@@ -181,29 +183,29 @@ def test_thesis_swing_is_a_function_of_arc_length():
 
 @few
 @given(path=paths)
-def test_the_thesis_swing_does_not_stop_on_its_path(path):
+def test_the_thesis_swing_does_not_stop_on_its_path(path: FootPathParameters) -> None:
     """The arc length grows monotonically for every allowed size: s' > 0."""
     cycle = FootCycle(replace(path, swing="thesis"))
     speeds = [np.hypot(*cycle.derivative(p)) for p in np.linspace(0.0, 1.0, 401)]
     assert min(speeds) > path.step_length
 
 
-def test_smooth_swing_has_far_smaller_accelerations():
+def test_smooth_swing_has_far_smaller_accelerations() -> None:
     """The reason for a second law: peak acceleration of the foot at the default sizes."""
     phases, peak = np.linspace(0.0, 1.0, 4001), {}
     for law in LAWS:
-        cycle = FootCycle(FootPathParameters(swing=law))
+        cycle = FootCycle(FootPathParameters(swing=law))  # type: ignore[arg-type]
         rates = np.array([cycle.derivative(p) for p in phases])
         peak[law] = np.linalg.norm(np.gradient(rates, phases, axis=0), axis=1).max()
     assert peak["smooth"] < 0.25 * peak["thesis"]
 
 
-def test_the_path_is_the_same_shape_at_every_size():
+def test_the_path_is_the_same_shape_at_every_size() -> None:
     small, large = (FootPathParameters(L, H) for L, H in ((0.25, 0.05), (0.5, 0.1)))
     np.testing.assert_allclose(2 * swing_points(small), swing_points(large), atol=1e-9)
 
 
-def test_timing_at_the_thesis_speed():
+def test_timing_at_the_thesis_speed() -> None:
     """E26: v 1.4 with L 0.5 and duty 0.6 is a stride of 0.595 s, 202 steps a minute."""
     path = FootPathParameters()
     assert path.walked_stride / 1.4 == pytest.approx(0.595, abs=5e-4)
@@ -217,37 +219,37 @@ def test_timing_at_the_thesis_speed():
     ("length_cm", "offset_cm"),
     [(30, 1.3), (40, 2.3), (50, 3.70), (60, 5.4), (70, 7.4), (80, 9.8)],
 )
-def test_minimum_offset_is_that_of_the_errata(length_cm, offset_cm):
+def test_minimum_offset_is_that_of_the_errata(length_cm: int, offset_cm: float) -> None:
     """E32, hip to ankle 86.4 cm."""
     digits = 5e-3 if length_cm == 50 else 5e-2
     assert minimum_offset(length_cm / 100, LEG_LENGTH) * 100 == pytest.approx(offset_cm, abs=1.01 * digits)
 
 
 @given(length=st.floats(0.0, 1.6))
-def test_minimum_offset_lets_a_straight_leg_just_reach(length):
+def test_minimum_offset_lets_a_straight_leg_just_reach(length: float) -> None:
     hip_height = LEG_LENGTH - minimum_offset(length, LEG_LENGTH)
     assert math.hypot(hip_height, length / 2) == pytest.approx(LEG_LENGTH)
 
 
 @pytest.mark.parametrize("length", [1.8, -0.1, math.nan])
-def test_a_step_longer_than_two_legs_has_no_offset(length):
+def test_a_step_longer_than_two_legs_has_no_offset(length: float) -> None:
     with pytest.raises(ValueError, match="step_length: "):
         minimum_offset(length, LEG_LENGTH)
 
 
 @pytest.mark.parametrize("field", ["step_length", "step_height", "offset", "duty_factor"])
 @pytest.mark.parametrize("value", [-0.1, 50.0, math.nan])
-def test_values_out_of_range_are_rejected(field, value):
+def test_values_out_of_range_are_rejected(field: Any, value: Any) -> None:
     with pytest.raises(ValueError, match=f"{field}: .*allowed"):
         FootPathParameters(**{field: value})
 
 
-def test_a_running_duty_factor_is_rejected():
+def test_a_running_duty_factor_is_rejected() -> None:
     """E26: the thesis' own duty, 0.42 to 0.46, leaves both feet in the air."""
     with pytest.raises(ValueError, match="duty_factor"):
         FootPathParameters(duty_factor=0.46)
 
 
-def test_an_unknown_swing_is_rejected():
+def test_an_unknown_swing_is_rejected() -> None:
     with pytest.raises(ValueError, match=r"swing: .*thesis or smooth"):
-        FootPathParameters(swing="moon")
+        FootPathParameters(swing="moon")  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ times = st.floats(0.0, 20.0)
 
 
 @given(ramp=ramps)
-def test_starts_at_rest_and_reaches_its_speed(ramp):
+def test_starts_at_rest_and_reaches_its_speed(ramp: SpeedRamp) -> None:
     assert ramp.distance(0.0) == ramp.speed_at(0.0) == 0.0
     assert ramp.distance(-1.0) == ramp.speed_at(-1.0) == ramp.acceleration(-1.0) == 0.0
     assert ramp.speed_at(0.5 * ramp.duration) == pytest.approx(0.5 * ramp.speed)
@@ -22,7 +22,7 @@ def test_starts_at_rest_and_reaches_its_speed(ramp):
 
 
 @given(ramp=ramps, t=times)
-def test_speed_is_the_rate_of_distance_and_acceleration_of_speed(ramp, t):
+def test_speed_is_the_rate_of_distance_and_acceleration_of_speed(ramp: SpeedRamp, t: float) -> None:
     h = 1e-5
     kink = abs(t - ramp.duration) < 2 * h or t < 2 * h
     rate = (ramp.distance(t + h) - ramp.distance(t - h)) / (2 * h)
@@ -33,28 +33,28 @@ def test_speed_is_the_rate_of_distance_and_acceleration_of_speed(ramp, t):
 
 
 @given(ramp=ramps, t=times)
-def test_time_at_inverts_distance(ramp, t):
+def test_time_at_inverts_distance(ramp: SpeedRamp, t: float) -> None:
     assert ramp.distance(ramp.time_at(ramp.distance(t))) == pytest.approx(ramp.distance(t), abs=1e-12)
 
 
-def test_the_backward_start_of_the_thesis_takes_0_365_s():
+def test_the_backward_start_of_the_thesis_takes_0_365_s() -> None:
     """E26: 25.56 cm while ramping to 1.4 m/s, the same time as 51.08 cm at 1.4 m/s."""
     ramp = SpeedRamp(1.4, 0.3652)
     assert ramp.time_at(0.2556) == pytest.approx(0.5108 / 1.4, rel=2e-3)
 
 
-def test_no_ramp_starts_at_full_speed():
+def test_no_ramp_starts_at_full_speed() -> None:
     ramp = SpeedRamp(1.0, 0.0)
     assert (ramp.distance(2.0), ramp.speed_at(0.0), ramp.acceleration(0.0)) == (2.0, 1.0, 0.0)
 
 
-def test_with_speed_zero_the_body_stands():
+def test_with_speed_zero_the_body_stands() -> None:
     assert SpeedRamp(0.0).distance(100.0) == 0.0
     assert math.isinf(SpeedRamp(0.0).time_at(0.1))
 
 
 @pytest.mark.parametrize("field", ["speed", "duration"])
 @pytest.mark.parametrize("value", [-0.1, 140.0, math.nan])
-def test_values_out_of_range_are_rejected(field, value):
+def test_values_out_of_range_are_rejected(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"{field}: .*allowed"):
         SpeedRamp(**{field: value})

@@ -1,5 +1,7 @@
 """Touchdown and toe-off of constructed vertical forces whose stances are known."""
 
+from typing import Any
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -15,6 +17,7 @@ from humanwalk.measures.events import (
     foot_events,
 )
 from humanwalk.measures.signals import TIME
+from humanwalk.numerics import Array
 
 PERIOD = 0.002
 WEIGHT = 700.0
@@ -22,11 +25,11 @@ STANCES = ((0.5, 1.1), (1.5, 2.1), (2.5, 3.1))
 """Begin and end of the stances of the constructed walk [s]."""
 
 
-def rows(seconds):
+def rows(seconds: float) -> int:
     return round(seconds / PERIOD)
 
 
-def force_of(*stances, duration=3.5, force=WEIGHT):
+def force_of(*stances: tuple[float, float], duration: float = 3.5, force: float = WEIGHT) -> Array:
     """A foot that carries a force within some intervals [s]."""
     values = np.zeros(rows(duration) + 1)
     for begin, end in stances:
@@ -34,7 +37,7 @@ def force_of(*stances, duration=3.5, force=WEIGHT):
     return values
 
 
-def lift(force, *intervals):
+def lift(force: Array, *intervals: tuple[float, float]) -> Array:
     """The same without contact within some intervals [s]."""
     force = force.copy()
     for begin, end in intervals:
@@ -42,26 +45,26 @@ def lift(force, *intervals):
     return force
 
 
-def found(force):
+def found(force: Any) -> Any:
     """Touchdown and toe-off times [s]."""
     time = PERIOD * np.arange(force.size)
     events = foot_events(time, force)
     return time[events.touchdowns], time[events.toe_offs]
 
 
-def assert_events(force, stances=STANCES):
+def assert_events(force: Array, stances: tuple[tuple[float, float], ...] = STANCES) -> None:
     touchdowns, toe_offs = found(force)
     np.testing.assert_allclose(touchdowns, [begin for begin, _ in stances], atol=1e-9)
     np.testing.assert_allclose(toe_offs, [end for _, end in stances], atol=1e-9)
 
 
-def test_events_are_the_ends_of_the_stances():
+def test_events_are_the_ends_of_the_stances() -> None:
     assert_events(force_of(*STANCES))
 
 
-def test_contact_is_true_from_touchdown_to_toe_off():
+def test_contact_is_true_from_touchdown_to_toe_off() -> None:
     time = PERIOD * np.arange(rows(3.5) + 1)
-    events = foot_events(time, lift(force_of(*STANCES), (0.52, 0.55)))
+    events = foot_events(time, lift(force_of(*STANCES), (0.52, 0.55)))  # type: ignore[arg-type]
     expected = np.zeros(time.size, dtype=bool)
     for down, up in zip(events.touchdowns, events.toe_offs, strict=True):
         expected[down:up] = True
@@ -73,33 +76,33 @@ def test_contact_is_true_from_touchdown_to_toe_off():
 # Bounces, drags and scuffs.
 
 
-def test_heel_that_bounces_once_lands_at_its_first_contact():
+def test_heel_that_bounces_once_lands_at_its_first_contact() -> None:
     """The heel of `walk` at 1.0 m/s: 25 ms of contact, 24 ms of flight."""
     assert_events(lift(force_of(*STANCES), (0.525, 0.549), (1.525, 1.549), (2.525, 2.549)))
 
 
-def test_heel_that_bounces_several_times_lands_at_its_first_contact():
+def test_heel_that_bounces_several_times_lands_at_its_first_contact() -> None:
     assert_events(lift(force_of(*STANCES), (1.504, 1.56), (1.564, 1.63), (1.636, 1.66)))
 
 
-def test_touch_of_one_sample_that_begins_a_stance_is_the_touchdown():
+def test_touch_of_one_sample_that_begins_a_stance_is_the_touchdown() -> None:
     assert_events(lift(force_of(*STANCES), (1.502, 1.502 + MIN_SWING_S - PERIOD)))
 
 
-def test_toe_that_drags_leaves_the_ground_at_its_last_contact():
+def test_toe_that_drags_leaves_the_ground_at_its_last_contact() -> None:
     assert_events(lift(force_of(*STANCES), (1.0, 1.04), (1.05, 1.09)))
 
 
-def test_foot_that_brushes_the_ground_in_mid_swing_stays_in_swing():
+def test_foot_that_brushes_the_ground_in_mid_swing_stays_in_swing() -> None:
     assert_events(force_of(*STANCES, (1.28, 1.28 + MIN_STANCE_S - PERIOD)))
 
 
-def test_stance_as_short_as_a_sprinter_s_counts():
+def test_stance_as_short_as_a_sprinter_s_counts() -> None:
     stances = ((0.5, 0.6), (1.0, 1.1))
     assert_events(force_of(*stances), stances)
 
 
-def test_swing_just_as_long_as_the_shortest_counts():
+def test_swing_just_as_long_as_the_shortest_counts() -> None:
     stances = ((0.5, 1.0), (1.0 + MIN_SWING_S + PERIOD, 2.0))
     assert_events(force_of(*stances), stances)
 
@@ -110,7 +113,7 @@ def test_swing_just_as_long_as_the_shortest_counts():
     stance=st.sampled_from(range(len(STANCES))),
     again=st.integers(0, 3),
 )
-def test_bounces_after_a_touchdown_change_no_event(contact, flight, stance, again):
+def test_bounces_after_a_touchdown_change_no_event(contact: int, flight: int, stance: int, again: int) -> None:
     begin, end = (rows(at) for at in STANCES[stance])
     force = force_of(*STANCES)
     first = begin + contact
@@ -126,10 +129,10 @@ def test_bounces_after_a_touchdown_change_no_event(contact, flight, stance, agai
         st.tuples(st.integers(1, 120), st.sampled_from([0.0, 35.0, 500.0, -10.0, np.nan])), min_size=1, max_size=20
     )
 )
-def test_of_any_force_no_swing_or_whole_stance_is_short_and_events_alternate(pieces):
+def test_of_any_force_no_swing_or_whole_stance_is_short_and_events_alternate(pieces: list[tuple[int, float]]) -> None:
     force = np.concatenate([np.full(length, level) for length, level in pieces])
     time = PERIOD * np.arange(force.size)
-    events = foot_events(time, force)
+    events = foot_events(time, force)  # type: ignore[arg-type]
     down, up = events.touchdowns, events.toe_offs
     assert abs(down.size - up.size) <= 1
     if down.size and up.size:
@@ -146,38 +149,38 @@ def test_of_any_force_no_swing_or_whole_stance_is_short_and_events_alternate(pie
 
 
 @pytest.mark.parametrize("unloaded", [0.0, 0.002, 0.05])
-def test_standing_start_is_no_touchdown(unloaded):
+def test_standing_start_is_no_touchdown(unloaded: float) -> None:
     """The first rows of a body that starts standing are without force."""
     touchdowns, toe_offs = found(force_of((unloaded, 1.0), (1.4, 2.0)))
     np.testing.assert_allclose(touchdowns, [1.4])
     np.testing.assert_allclose(toe_offs, [1.0, 2.0])
 
 
-def test_start_in_the_air_is_followed_by_a_touchdown():
+def test_start_in_the_air_is_followed_by_a_touchdown() -> None:
     touchdowns, _ = found(force_of((0.3, 3.5)))
     np.testing.assert_allclose(touchdowns, [0.3])
 
 
-def test_stance_that_the_record_cuts_off_has_no_toe_off():
+def test_stance_that_the_record_cuts_off_has_no_toe_off() -> None:
     touchdowns, toe_offs = found(force_of((0.5, 1.1), (3.48, 4.0)))
     np.testing.assert_allclose(touchdowns, [0.5, 3.48])
     np.testing.assert_allclose(toe_offs, [1.1])
 
 
-def test_loss_of_contact_that_the_record_cuts_off_is_no_toe_off_before_it_is_as_long_as_a_swing():
+def test_loss_of_contact_that_the_record_cuts_off_is_no_toe_off_before_it_is_as_long_as_a_swing() -> None:
     for rest, count in ((0.05, 0), (0.15, 1)):
         assert found(force_of((0.5, 3.5 - rest)))[1].size == count
 
 
 @pytest.mark.parametrize("force", [0.0, WEIGHT, np.nan])
 @pytest.mark.parametrize("size", [1, 2, 500])
-def test_force_that_never_changes_has_no_events(force, size):
+def test_force_that_never_changes_has_no_events(force: Any, size: Any) -> None:
     events = foot_events(PERIOD * np.arange(size), np.full(size, force))
     assert events.touchdowns.size == events.toe_offs.size == 0
     assert set(events.contact.tolist()) == {force == WEIGHT}
 
 
-def test_fall_leaves_the_events_before_it():
+def test_fall_leaves_the_events_before_it() -> None:
     """The feet leave the ground and knock against it, then lie."""
     fallen = lift(force_of((0.5, 1.1), (1.5, 1.9), (2.2, 2.23), (2.34, 2.36), (3.0, 3.4)))
     touchdowns, toe_offs = found(fallen)
@@ -188,21 +191,21 @@ def test_fall_leaves_the_events_before_it():
 # Thresholds.
 
 
-def test_force_between_the_thresholds_changes_no_contact():
+def test_force_between_the_thresholds_changes_no_contact() -> None:
     between = 0.5 * (CONTACT_ON_N + CONTACT_OFF_N)
     levels = np.repeat([0.0, between, 500.0, between, 0.0, between], 100)
-    contact = foot_events(PERIOD * np.arange(levels.size), levels).contact
+    contact = foot_events(PERIOD * np.arange(levels.size), levels).contact  # type: ignore[arg-type]
     assert contact[::100].tolist() == [False, False, True, True, False, False]
 
 
 @given(seed=st.integers(0, 2**32 - 1), amplitude=st.floats(0.0, CONTACT_OFF_N - 1.0))
-def test_noise_below_the_hysteresis_changes_no_event(seed, amplitude):
+def test_noise_below_the_hysteresis_changes_no_event(seed: int, amplitude: float) -> None:
     noise = amplitude * np.random.default_rng(seed).uniform(-1, 1, rows(3.5) + 1)
     assert_events(force_of(*STANCES) + noise)
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-def test_noise_around_the_thresholds_moves_events_along_the_slope_of_the_force_only(seed):
+def test_noise_around_the_thresholds_moves_events_along_the_slope_of_the_force_only(seed: int) -> None:
     """A force that rises and falls within 20 ms, with noise of 15 N."""
     ramp = np.ones(rows(0.02)) / rows(0.02)
     force = np.convolve(force_of(*STANCES), ramp)[: rows(3.5) + 1]
@@ -215,7 +218,7 @@ def test_noise_around_the_thresholds_moves_events_along_the_slope_of_the_force_o
 # Of a record.
 
 
-def test_events_of_a_record_count_from_a_time_on():
+def test_events_of_a_record_count_from_a_time_on() -> None:
     force = force_of(*STANCES)
     signals = pa.table({TIME: PERIOD * np.arange(force.size), "left_foot.force_z_N": force})
     np.testing.assert_allclose(events_of(signals, "Left", begin=0.8).touchdown_times, [1.5, 2.5])

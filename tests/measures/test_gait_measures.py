@@ -1,6 +1,7 @@
 """Gait measures of constructed walks whose step, stride and work are known."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -16,7 +17,15 @@ PERIOD = 0.002
 WEIGHT = 700.0
 
 
-def walk(stride=1.0, duty=0.6, length=1.2, width=0.2, lag=0.5, duration=6.0, **more):
+def walk(
+    stride: float = 1.0,
+    duty: float = 0.6,
+    length: float = 1.2,
+    width: float = 0.2,
+    lag: float = 0.5,
+    duration: float = 6.0,
+    **more: Any,
+) -> pa.Table:
     """Feet that stand still in stance and glide to the next place in swing; the left one `lag` of a stride later.
 
     The right foot lands at stride, 2 stride, ...; at its landing the left one stands where it landed before.
@@ -39,7 +48,7 @@ def walk(stride=1.0, duty=0.6, length=1.2, width=0.2, lag=0.5, duration=6.0, **m
     return pa.table(data | more)
 
 
-def both(value):
+def both(value: float) -> dict[str, Any]:
     return {"right": pytest.approx(value, rel=0.02), "left": pytest.approx(value, rel=0.02)}
 
 
@@ -54,7 +63,7 @@ walks = st.fixed_dictionaries(
 
 
 @given(walks)
-def test_measures_of_a_symmetric_walk_are_those_of_its_construction(made):
+def test_measures_of_a_symmetric_walk_are_those_of_its_construction(made: dict[str, float]) -> None:
     measures = gait_measures(walk(**made), 0.0)
     assert measures["stride_time_s"] == both(made["stride"])
     assert measures["stride_length_m"] == both(made["length"])
@@ -68,7 +77,7 @@ def test_measures_of_a_symmetric_walk_are_those_of_its_construction(made):
     assert measures["stride_speed_m_s"] == pytest.approx(made["length"] / made["stride"], rel=0.02)
 
 
-def test_steps_of_a_limp_differ_and_strides_do_not():
+def test_steps_of_a_limp_differ_and_strides_do_not() -> None:
     measures = gait_measures(walk(lag=0.4), 0.0)
     assert measures["stride_time_s"] == both(1.0)
     # The left foot lands 0.4 of a stride after the right one, and 0.4 of a stride length in front of it.
@@ -78,47 +87,47 @@ def test_steps_of_a_limp_differ_and_strides_do_not():
     assert measures["step_length_m"]["right"] == pytest.approx(0.72, rel=0.02)
 
 
-def test_crossed_feet_have_a_negative_width():
+def test_crossed_feet_have_a_negative_width() -> None:
     assert gait_measures(walk(width=-0.05), 0.0)["step_width_m"] == both(-0.05)
 
 
-def test_running_has_no_double_support():
+def test_running_has_no_double_support() -> None:
     measures = gait_measures(walk(duty=0.4), 0.0)
     assert set(measures["double_support_share"].values()) == {0.0}
     assert measures["stance_share"] == both(0.4)
 
 
-def test_stride_without_toe_off_has_no_stance_share():
+def test_stride_without_toe_off_has_no_stance_share() -> None:
     signals = walk(duration=1.3)
     assert stance_shares(events_of(signals, "Right")).size == 0
 
 
-def test_excursion_of_the_center_of_pressure_is_per_stance():
+def test_excursion_of_the_center_of_pressure_is_per_stance() -> None:
     measures = gait_measures(walk(), 0.0)
     assert measures["cop_excursion_m"]["x"] == both(0.25)
     assert measures["cop_excursion_m"]["y"] == {"right": 0.0, "left": 0.0}
 
 
-def test_joint_work_is_per_stride_and_split_by_sign():
+def test_joint_work_is_per_stride_and_split_by_sign() -> None:
     """Power 40 sin: half a wave of it is 40 / pi over a stride of one second."""
     work = gait_measures(walk(), 0.0)["joint_work_J"]
-    assert work == {
+    assert work == {  # type: ignore[comparison-overlap]
         "knee": {"positive": pytest.approx(40 / np.pi, rel=1e-3), "negative": pytest.approx(-40 / np.pi, rel=1e-3)}
     }
 
 
-def test_joint_work_sums_to_the_change_of_energy():
+def test_joint_work_sums_to_the_change_of_energy() -> None:
     signals = walk()
-    work = gait_measures(signals, 0.0)["joint_work_J"]["knee"]
+    work = gait_measures(signals, 0.0)["joint_work_J"]["knee"]  # type: ignore[index]
     assert work["positive"] + work["negative"] == pytest.approx(0.0, abs=1e-3)
 
 
-def test_strides_count_from_a_time_on():
+def test_strides_count_from_a_time_on() -> None:
     assert gait_measures(walk(), 2.6)["strides"] == {"right": 3, "left": 2}
 
 
 @pytest.mark.parametrize("duration", [0.0, 0.3, 1.2])
-def test_walk_without_a_stride_has_null(duration):
+def test_walk_without_a_stride_has_null(duration: float) -> None:
     measures = gait_measures(walk(duration=duration), 0.0)
     assert measures["strides"] == {"right": 0, "left": 0}
     assert measures["stride_time_s"] == {"right": None, "left": None}

@@ -3,9 +3,10 @@
 import re
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.diagrams.walker import make_diagram, make_walker
@@ -26,7 +27,7 @@ WITHOUT_UNIT = (
 
 
 @pytest.fixture(scope="module")
-def recorded():
+def recorded() -> tuple[Diagram, Context, pa.Table]:
     """A tenth of a second of a walker with every port that can be recorded; walker, root context, table."""
     builder = DiagramBuilder()
     walker = builder.AddNamedSystem("walker", make_walker(load_scenario("thesis", LEVELS)))
@@ -38,19 +39,19 @@ def recorded():
     return walker, walker.GetMyContextFromRoot(context), recorder.table(context)
 
 
-def test_column_names_are_unique(recorded):
+def test_column_names_are_unique(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     _, _, table = recorded
     assert len(set(table.column_names)) == len(table.column_names)
     assert all(table.column_names)
 
 
-def test_every_column_names_its_unit(columns):
+def test_every_column_names_its_unit(columns: tuple[str, ...]) -> None:
     for name in columns:
         assert name.endswith(ENDINGS) or re.search(WITHOUT_UNIT, name), name
 
 
 @pytest.mark.parametrize("scenario", ["thesis", "stand"])
-def test_every_signal_has_a_column_for_every_element_of_its_port(joints, scenario):
+def test_every_signal_has_a_column_for_every_element_of_its_port(joints: JointMap, scenario: str) -> None:
     walker = make_diagram(load_scenario(scenario))
     signals = recorded_signals(walker, joints)
     for signal in signals:
@@ -61,18 +62,20 @@ def test_every_signal_has_a_column_for_every_element_of_its_port(joints, scenari
     assert vectors == {signal.name for signal in signals}
 
 
-def test_the_table_has_the_columns_of_every_signal(recorded, joints):
+def test_the_table_has_the_columns_of_every_signal(
+    recorded: tuple[Diagram, Context, pa.Table], joints: JointMap
+) -> None:
     walker, _, table = recorded
     columns = [column for signal in recorded_signals(walker, joints) for column in signal.columns]
     assert table.column_names == [TIME, *columns]
 
 
-def test_a_row_every_period(recorded):
+def test_a_row_every_period(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     _, _, table = recorded
     np.testing.assert_allclose(table[TIME].to_numpy(), PERIOD * np.arange(11), atol=1e-12)
 
 
-def test_joint_columns_hold_their_own_joint(recorded):
+def test_joint_columns_hold_their_own_joint(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     walker, context, table = recorded
     plant = walker.GetSubsystemByName("plant")
     plant_context = plant.CreateDefaultContext()
@@ -84,7 +87,7 @@ def test_joint_columns_hold_their_own_joint(recorded):
         assert table[f"{name}.velocity_rad_s"][-1].as_py() == joint.get_angular_rate(plant_context)
 
 
-def test_desired_angles_belong_to_the_joints_of_their_name(recorded):
+def test_desired_angles_belong_to_the_joints_of_their_name(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     _, _, table = recorded
     # The knee of the leg that swings first bends; the arms hang with bent elbows.
     assert table["RightLegTibiaMotion.desired_angle_rad"][-1].as_py() > 0.3
@@ -92,7 +95,7 @@ def test_desired_angles_belong_to_the_joints_of_their_name(recorded):
     assert table["LeftArmElbowMotion.desired_angle_rad"][-1].as_py() > 0.2
 
 
-def test_pelvis_columns_are_the_pelvis(recorded):
+def test_pelvis_columns_are_the_pelvis(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     walker, context, table = recorded
     plant = walker.GetSubsystemByName("plant")
     plant_context = plant.CreateDefaultContext()
@@ -107,7 +110,7 @@ def test_pelvis_columns_are_the_pelvis(recorded):
     )
 
 
-def test_right_is_right(recorded):
+def test_right_is_right(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     _, _, table = recorded
     assert table["right_sole.y_m"][0].as_py() < 0 < table["left_sole.y_m"][0].as_py()
     # The right foot swings first; the left one carries.
@@ -118,7 +121,7 @@ def test_right_is_right(recorded):
     assert table["right_foot.scheduled"][-1].as_py() == 0.0
 
 
-def test_unsupported_walker_has_no_columns_of_the_support(joints):
+def test_unsupported_walker_has_no_columns_of_the_support(joints: JointMap) -> None:
     walker = make_walker(load_scenario("thesis", {"controller.thesis.balance.support.enabled": "false"}))
     builder = DiagramBuilder()
     builder.AddSystem(walker)
@@ -130,7 +133,7 @@ def test_unsupported_walker_has_no_columns_of_the_support(joints):
     assert not [name for name in table.column_names if name.startswith(("support.", "balance."))]
 
 
-def test_matrix_keeps_the_order_of_the_columns_asked_for(recorded):
+def test_matrix_keeps_the_order_of_the_columns_asked_for(recorded: tuple[Diagram, Context, pa.Table]) -> None:
     _, _, table = recorded
     both = matrix(table, ["com.z_m", "com.x_m"])
     np.testing.assert_array_equal(both[:, 0], table["com.z_m"].to_numpy())

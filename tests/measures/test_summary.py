@@ -1,17 +1,20 @@
 """Measures of constructed signals whose values are known."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pytest
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import foot_lift, foot_line_error, summarize, tracking_error
+from humanwalk.numerics import Mask
 from humanwalk.quantity import GRAVITY
-from humanwalk.scenario import load_scenario
+from humanwalk.scenario import Scenario, load_scenario
 
 PERIOD = 0.01
 SPEED = 1.3
@@ -20,18 +23,18 @@ DUTY = 0.6
 LIFT = 0.12
 
 
-def steady_from(scenario):
+def steady_from(scenario: Scenario) -> float:
     return scenario.controller.steady_from(scenario.subject)
 
 
 MASS = 70.0
 
 
-def down(time, lag):
+def down(time: Any, lag: float) -> Mask:
     return (time / STRIDE + lag) % 1.0 < DUTY - 1e-9
 
 
-def walk_of(columns, duration=5.0, **changes) -> pa.Table:
+def walk_of(columns: tuple[str, ...], duration: Any = 5.0, **changes: Any) -> pa.Table:
     """Zeros everywhere but for feet that come down and a center of mass that advances."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
     data = {name: np.zeros_like(time) for name in columns}
@@ -46,14 +49,14 @@ def walk_of(columns, duration=5.0, **changes) -> pa.Table:
     return pa.table({TIME: time, **data})
 
 
-def summary_of(signals, end="completed", overrides=None):
+def summary_of(signals: pa.Table, end: str = "completed", overrides: dict[str, str] | None = None) -> Any:
     return summarize(load_scenario("thesis", overrides), signals, end, 2.0, "made up")
 
 
 # The whole.
 
 
-def test_summary_has_the_documented_keys(columns, joints):
+def test_summary_has_the_documented_keys(columns: tuple[str, ...], joints: JointMap) -> None:
     summary = summary_of(walk_of(columns))
     assert {
         "scenario",
@@ -78,13 +81,13 @@ def test_summary_has_the_documented_keys(columns, joints):
     assert tuple(summary["tracking_error_rad"]) == joints.names
 
 
-def test_summary_is_strict_json(columns):
+def test_summary_is_strict_json(columns: tuple[str, ...]) -> None:
     for signals in (walk_of(columns), walk_of(columns, 0.1), walk_of(columns, 0.0)):
         summary = summary_of(signals)
         assert json.loads(json.dumps(summary, allow_nan=False)) == summary
 
 
-def test_summary_of_a_walk_of_known_measures(columns, joints):
+def test_summary_of_a_walk_of_known_measures(columns: tuple[str, ...], joints: JointMap) -> None:
     summary = summary_of(
         walk_of(
             columns,
@@ -110,20 +113,20 @@ def test_summary_of_a_walk_of_known_measures(columns, joints):
     assert summary["external_support"] is True
 
 
-def test_speed_leaves_out_the_ramp(columns):
+def test_speed_leaves_out_the_ramp(columns: tuple[str, ...]) -> None:
     begin = steady_from(load_scenario("thesis"))
     signals = walk_of(columns, **{"com.x_m": lambda t: np.where(t < begin, 0.0, SPEED * (t - begin))})
     assert summary_of(signals)["mean_speed_m_s"] == pytest.approx(SPEED, rel=1e-2)
 
 
-def test_steady_walk_begins_with_the_later_of_ramp_and_first_landing():
+def test_steady_walk_begins_with_the_later_of_ramp_and_first_landing() -> None:
     assert steady_from(load_scenario("thesis", {"controller.thesis.gait.ramp.duration": "3"})) == 3.0
     quick = load_scenario("thesis", {"controller.thesis.gait.ramp.duration": "0"})
     # The first landing is L (1 / (2 duty) - 1/2) on.
     assert quick.controller.steady_from(quick.subject) == pytest.approx(0.5 * (1 / 1.2 - 0.5) / 1.4)
 
 
-def test_run_without_a_steady_part_has_null_there(columns):
+def test_run_without_a_steady_part_has_null_there(columns: tuple[str, ...]) -> None:
     summary = summary_of(walk_of(columns, 0.2), end="fell")
     for key in ("mean_speed_m_s", "support_force_rms_N", "pelvis_tracking_rms_m", "cost_of_transport"):
         assert summary[key] is None
@@ -133,14 +136,14 @@ def test_run_without_a_steady_part_has_null_there(columns):
     assert summary["fall_time_s"] == pytest.approx(0.2)
 
 
-def test_walk_that_never_becomes_steady_by_its_scenario_has_null_there(columns):
+def test_walk_that_never_becomes_steady_by_its_scenario_has_null_there(columns: tuple[str, ...]) -> None:
     summary = summary_of(walk_of(columns), overrides={"controller.thesis.gait.ramp.speed": "0"})
     assert summary["mean_speed_m_s"] is None
     assert summary["steady_from_s"] is None
     json.dumps(summary, allow_nan=False)
 
 
-def test_run_that_ended_in_no_number_is_still_strict_json(columns, joints):
+def test_run_that_ended_in_no_number_is_still_strict_json(columns: tuple[str, ...], joints: JointMap) -> None:
     name = joints.names[0]
     ends_badly = {column: lambda t: np.where(t == t[-1], np.nan, t) for column in ("com.x_m", f"{name}.torque_N_m")}
     summary = summary_of(walk_of(columns, **ends_badly), end="not a number")
@@ -150,12 +153,12 @@ def test_run_that_ended_in_no_number_is_still_strict_json(columns, joints):
 
 
 @pytest.mark.parametrize("end", ["interrupted", "not a number", "solver failed: x"])
-def test_run_that_ended_for_another_reason_did_not_fall(columns, end):
+def test_run_that_ended_for_another_reason_did_not_fall(columns: tuple[str, ...], end: str) -> None:
     summary = summary_of(walk_of(columns), end=end)
     assert (summary["survived"], summary["fall_time_s"], summary["end"]) == (False, None, end)
 
 
-def test_run_without_support_is_marked(columns):
+def test_run_without_support_is_marked(columns: tuple[str, ...]) -> None:
     signals = walk_of(columns)
     signals = signals.drop_columns([name for name in signals.column_names if name.startswith("support.")])
     summary = summary_of(signals, overrides={"controller.thesis.balance.support.enabled": "false"})
@@ -163,7 +166,7 @@ def test_run_without_support_is_marked(columns):
     assert summary["support_force_rms_N"] == 0.0
 
 
-def test_saturated_share_and_peak_torque_are_of_their_joint(columns, joints):
+def test_saturated_share_and_peak_torque_are_of_their_joint(columns: tuple[str, ...], joints: JointMap) -> None:
     name = joints.names[5]
     signals = walk_of(
         columns,
@@ -179,14 +182,14 @@ def test_saturated_share_and_peak_torque_are_of_their_joint(columns, joints):
 # Its parts.
 
 
-def test_first_rows_without_force_are_no_landing(columns):
+def test_first_rows_without_force_are_no_landing(columns: tuple[str, ...]) -> None:
     standing = {f"{side}_foot.force_z_N": lambda t: np.where(t < 0.005, 0.0, 350.0) for side in ("right", "left")}
     signals = walk_of(columns, **standing)
     assert events_of(signals, "Right").touchdowns.size == events_of(signals, "Left").touchdowns.size == 0
     assert summary_of(signals)["steps"] == 0
 
 
-def test_touchdowns_are_when_the_force_comes_back(columns):
+def test_touchdowns_are_when_the_force_comes_back(columns: tuple[str, ...]) -> None:
     signals = walk_of(columns)
     np.testing.assert_allclose(events_of(signals, "Right").touchdown_times, STRIDE * np.arange(1, 9), atol=1.5 * PERIOD)
     np.testing.assert_allclose(
@@ -195,20 +198,20 @@ def test_touchdowns_are_when_the_force_comes_back(columns):
     assert summary_of(signals)["steps"] == 16
 
 
-def test_foot_lift_is_the_peak_above_the_start_and_needs_a_stride(columns):
+def test_foot_lift_is_the_peak_above_the_start_and_needs_a_stride(columns: tuple[str, ...]) -> None:
     signals = walk_of(columns)
     assert foot_lift(signals, "Right") == pytest.approx(LIFT, rel=0.02)
     assert foot_lift(signals, "Left") == pytest.approx(LIFT, rel=0.02)
     assert foot_lift(walk_of(columns, 0.5), "Right") is None
 
 
-def test_foot_line_error_is_the_greatest_either_way(columns):
+def test_foot_line_error_is_the_greatest_either_way(columns: tuple[str, ...]) -> None:
     signals = walk_of(columns, **{"right_sole.y_m": lambda t: -0.1 + np.where(t == 2.0, -0.03, 0.02)})
     assert foot_line_error(signals, "Right") == pytest.approx(0.05)
     assert foot_line_error(signals, "Left") == 0.0
 
 
-def test_tracking_error_is_root_mean_square(columns, joints):
+def test_tracking_error_is_root_mean_square(columns: tuple[str, ...], joints: JointMap) -> None:
     name = joints.names[3]
     signals = walk_of(columns, **{f"{name}.desired_angle_rad": lambda t: np.where(t < 2.5, 0.0, 0.2)})
     rows = signals[TIME].to_numpy() >= 2.5
@@ -217,7 +220,7 @@ def test_tracking_error_is_root_mean_square(columns, joints):
     assert tracking_error(signals, name, rows & ~rows) is None
 
 
-def test_cost_of_transport_of_a_known_power(columns, joints):
+def test_cost_of_transport_of_a_known_power(columns: tuple[str, ...], joints: JointMap) -> None:
     first, second = joints.names[:2]
     signals = walk_of(
         columns,
@@ -238,6 +241,6 @@ def test_cost_of_transport_of_a_known_power(columns, joints):
 
 
 @pytest.mark.parametrize("way", [0.0, -1.0])
-def test_cost_of_transport_of_no_way_forward_is_null(columns, way):
+def test_cost_of_transport_of_no_way_forward_is_null(columns: tuple[str, ...], way: float) -> None:
     signals = walk_of(columns, **{"com.x_m": lambda t: way * t})
     assert cost_of_transport(signals, np.ones(signals.num_rows, dtype=bool), MASS) is None

@@ -1,15 +1,20 @@
 """A recording as motion of the body: by names, by a mapping, with or without a pelvis path."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 from humanwalk.body import contact_spheres
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import SPINE_PITCH_JOINTS
 from humanwalk.body.opensim_names import COORDINATES
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.motion.followed import REQUIRED_JOINTS, followed_motion
 from humanwalk.motion.motion_table import MotionTable, storage_text
-from humanwalk.motion.recorded_motion import MotionMapping
+from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion
+from humanwalk.numerics import Array
 from humanwalk.parameter_file import load_as
 from humanwalk.quantity import ParameterError
 from humanwalk.terrain import Plane
@@ -18,7 +23,7 @@ TIME = np.arange(0, 1.001, 0.02)
 LEVEL = Plane()
 
 
-def squat(depth=0.6):
+def squat(depth: float = 0.6) -> dict[str, Array]:
     """Hips, knees and ankles bend together, so that the soles stay level; OpenSim's names, degrees."""
     bend = np.rad2deg(depth * np.sin(0.5 * np.pi * TIME) ** 2)
     columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in REQUIRED_JOINTS}
@@ -27,17 +32,17 @@ def squat(depth=0.6):
     return columns
 
 
-def write_mot(path, columns):
+def write_mot(path: Path, columns: dict[str, Array]) -> Path:
     path.write_text(storage_text("t", MotionTable(tuple(columns), TIME, np.column_stack(list(columns.values())), True)))
     return path
 
 
-def read(path, mapping=None, terrain=LEVEL):
+def read(path: Any, mapping: Any = None, terrain: Any = LEVEL) -> RecordedMotion:
     mapping = load_as(MotionMapping, mapping) if mapping else MotionMapping()
     return followed_motion(path, mapping, Subject(), terrain, ease_in=0.3)
 
 
-def refusal(path, mapping=None):
+def refusal(path: Path, mapping: Path | None = None) -> str:
     with pytest.raises(ParameterError) as raised:
         read(path, mapping)
     assert len(str(raised.value).splitlines()) == 1
@@ -45,18 +50,18 @@ def refusal(path, mapping=None):
 
 
 @pytest.fixture
-def squat_file(tmp_path):
+def squat_file(tmp_path: Path) -> Path:
     return write_mot(tmp_path / "squat.mot", squat())
 
 
-def test_opensim_names_and_degrees_are_read(squat_file, joints):
+def test_opensim_names_and_degrees_are_read(squat_file: Path, joints: JointMap) -> None:
     motion = read(squat_file)
     place = {name: i for i, name in enumerate(joints.names)}
     np.testing.assert_allclose(motion.angles[-1, place["RightLegTibiaMotion"]], 1.2, atol=1e-9)
     assert not motion.angles[:, place["Head_Motion"]].any()
 
 
-def test_own_joint_names_are_read_and_opensim_signs_are_converted(tmp_path, joints):
+def test_own_joint_names_are_read_and_opensim_signs_are_converted(tmp_path: Path, joints: JointMap) -> None:
     columns = squat() | {"hip_adduction_r": np.full_like(TIME, -10.0), "Head_Motion": np.full_like(TIME, 20.0)}
     motion = read(write_mot(tmp_path / "t.mot", columns))
     angle = dict(zip(joints.names, motion.angles[0], strict=True))
@@ -64,14 +69,14 @@ def test_own_joint_names_are_read_and_opensim_signs_are_converted(tmp_path, join
     assert angle["Head_Motion"] == pytest.approx(np.deg2rad(20))
 
 
-def test_opensims_back_joint_is_distributed_over_the_spine(tmp_path, joints):
+def test_opensims_back_joint_is_distributed_over_the_spine(tmp_path: Path, joints: JointMap) -> None:
     columns = squat() | {"lumbar_extension": np.full_like(TIME, -20.0)}
     motion = read(write_mot(tmp_path / "t.mot", columns))
     angle = dict(zip(joints.names, motion.angles[0], strict=True))
     assert sum(angle[name] for name in SPINE_PITCH_JOINTS) == pytest.approx(np.deg2rad(20))
 
 
-def test_mapping_renames_scales_and_changes_units(tmp_path, joints):
+def test_mapping_renames_scales_and_changes_units(tmp_path: Path, joints: JointMap) -> None:
     names = [name for name in REQUIRED_JOINTS if name != "LeftLegFemurTwistMotion"]
     knee = np.linspace(0, 0.5, TIME.size)
     columns = {f"c{i}": -knee if "Tibia" in name else np.zeros_like(TIME) for i, name in enumerate(names)}
@@ -89,7 +94,7 @@ def test_mapping_renames_scales_and_changes_units(tmp_path, joints):
     np.testing.assert_allclose(motion.angles[:, place["LeftLegFemurTwistMotion"]], 0.1)
 
 
-def test_error_names_all_missing_joints_and_the_fix(tmp_path):
+def test_error_names_all_missing_joints_and_the_fix(tmp_path: Path) -> None:
     columns = squat()
     del columns["knee_angle_r"], columns["hip_rotation_l"]
     message = refusal(write_mot(tmp_path / "t.mot", columns))
@@ -113,24 +118,24 @@ def test_error_names_all_missing_joints_and_the_fix(tmp_path):
         ("columns: {RightLegTibiaMotion: &a {column: *a}}", "map.yaml"),
     ],
 )
-def test_invalid_mapping_produces_a_one_line_error(tmp_path, squat_file, text, message):
+def test_invalid_mapping_produces_a_one_line_error(tmp_path: Path, squat_file: Path, text: str, message: str) -> None:
     mapping = tmp_path / "map.yaml"
     mapping.write_text(text)
     assert message in refusal(squat_file, mapping)
 
 
-def test_csv_without_unit_is_refused(tmp_path):
+def test_csv_without_unit_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "t.csv"
     path.write_text("time," + ",".join(REQUIRED_JOINTS) + "\n0" + ",0" * 10 + "\n1" + ",0" * 10 + "\n")
     assert "unknown angle unit" in refusal(path)
 
 
-def test_part_of_a_pelvis_path_is_refused(tmp_path):
+def test_part_of_a_pelvis_path_is_refused(tmp_path: Path) -> None:
     path = write_mot(tmp_path / "t.mot", squat() | {"pelvis_tx": TIME})
     assert "all three or none" in refusal(path)
 
 
-def clearance(motion, joints, row, terrain=LEVEL):
+def clearance(motion: RecordedMotion, joints: JointMap, row: int, terrain: Plane = LEVEL) -> float:
     """Height of the lowest point of the soles above the ground [m]."""
     plant = kinematics_plant(Subject())
     context = plant.CreateDefaultContext()
@@ -143,7 +148,7 @@ def clearance(motion, joints, row, terrain=LEVEL):
     return min(point[2] - terrain.height(point[:2]) for point in points)
 
 
-def test_without_a_recorded_path_the_stance_foot_does_not_slide(squat_file, joints):
+def test_without_a_recorded_path_the_stance_foot_does_not_slide(squat_file: Path, joints: JointMap) -> None:
     motion = read(squat_file)
     drop = motion.pelvis_position[0, 2] - motion.pelvis_position[-1, 2]
     thigh, shank = 0.4242, 0.439767
@@ -152,7 +157,7 @@ def test_without_a_recorded_path_the_stance_foot_does_not_slide(squat_file, join
         assert clearance(motion, joints, row) == pytest.approx(0, abs=1e-6)
 
 
-def test_recorded_path_starts_above_the_origin_with_the_soles_on_the_ground(tmp_path, joints):
+def test_recorded_path_starts_above_the_origin_with_the_soles_on_the_ground(tmp_path: Path, joints: JointMap) -> None:
     path = {"pelvis_tx": 3 + TIME, "pelvis_ty": np.full_like(TIME, 1.3), "pelvis_tz": np.full_like(TIME, -2.0)}
     motion = read(write_mot(tmp_path / "t.mot", squat(0) | path))
     np.testing.assert_allclose(motion.pelvis_position[0, :2], 0, atol=1e-12)
@@ -160,7 +165,7 @@ def test_recorded_path_starts_above_the_origin_with_the_soles_on_the_ground(tmp_
     assert clearance(motion, joints, 0) == pytest.approx(0, abs=1e-6)
 
 
-def test_on_a_slope_the_soles_stand_on_it(tmp_path, joints):
+def test_on_a_slope_the_soles_stand_on_it(tmp_path: Path, joints: JointMap) -> None:
     slope = Plane(slope=0.1)
     path = {"pelvis_tx": 0.5 * TIME, "pelvis_ty": np.ones_like(TIME), "pelvis_tz": np.zeros_like(TIME)}
     for recorded in ({}, path):
@@ -188,7 +193,9 @@ def test_on_a_slope_the_soles_stand_on_it(tmp_path, joints):
     ],
     ids=range(7),
 )
-def test_huge_values_produce_a_short_one_line_error(tmp_path, columns, mapping, message):
+def test_huge_values_produce_a_short_one_line_error(
+    tmp_path: Path, columns: dict[str, Any], mapping: str, message: str
+) -> None:
     recording = write_mot(tmp_path / "t.mot", squat() | {name: np.full_like(TIME, v) for name, v in columns.items()})
     (tmp_path / "map.yaml").write_text(mapping)
     error = refusal(recording, tmp_path / "map.yaml")

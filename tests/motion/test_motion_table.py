@@ -2,6 +2,7 @@
 
 import os
 import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,12 +22,13 @@ from humanwalk.motion.motion_table import (
     read_motion_table,
     storage_text,
 )
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 
 HEAD = "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees={flag}\nendheader\n"
 
 
-def refusal(path):
+def refusal(path: Path) -> str:
     with pytest.raises(ParameterError) as raised:
         read_motion_table(path)
     message = str(raised.value)
@@ -34,7 +36,7 @@ def refusal(path):
     return message
 
 
-def written(tmp_path, text, name="walk.csv"):
+def written(tmp_path: Path, text: str, name: str = "walk.csv") -> Path:
     path = tmp_path / name
     path.write_text(text)
     return path
@@ -44,7 +46,7 @@ numbers = st.floats(-1e6, 1e6, allow_subnormal=False)
 
 
 @given(arrays(float, (3, 4), elements=numbers), st.booleans())
-def test_written_table_is_read_back(tmp_path_factory, data, in_degrees):
+def test_written_table_is_read_back(tmp_path_factory: pytest.TempPathFactory, data: Array, in_degrees: bool) -> None:
     table = MotionTable(("a", "b c", "d", "e"), np.array([0.0, 0.1, 0.3]), data, in_degrees)
     path = tmp_path_factory.mktemp("table") / "t.mot"
     path.write_text(storage_text("t", table))
@@ -55,14 +57,14 @@ def test_written_table_is_read_back(tmp_path_factory, data, in_degrees):
 
 
 @pytest.mark.parametrize(("flag", "degrees"), [("yes", True), ("no", False), ("YES", True)])
-def test_storage_header_specifies_degrees_or_radians(tmp_path, flag, degrees):
+def test_storage_header_specifies_degrees_or_radians(tmp_path: Path, flag: str, degrees: bool) -> None:
     path = written(tmp_path, HEAD.format(flag=flag) + "time a b\n 0 1 2\n 1  3 4\n", "t.sto")
     table = read_motion_table(path)
     assert table.in_degrees is degrees
     np.testing.assert_array_equal(table.data, [[1, 2], [3, 4]])
 
 
-def test_csv_has_time_by_name_and_no_angle_unit(tmp_path):
+def test_csv_has_time_by_name_and_no_angle_unit(tmp_path: Path) -> None:
     table = read_motion_table(written(tmp_path, "a,time_s,b\n1,0,2\n3,0.5,4\n"))
     assert table.columns == ("a", "b")
     assert table.in_degrees is None
@@ -89,11 +91,11 @@ def test_csv_has_time_by_name_and_no_angle_unit(tmp_path):
         ("time,a\x1b[31m\n0,1\n1,x\n", r"column a\x1b[31m: 'x'"),
     ],
 )
-def test_error_of_an_invalid_table_has_the_line(tmp_path, text, message):
+def test_error_of_an_invalid_table_has_the_line(tmp_path: Path, text: str, message: str) -> None:
     assert message in refusal(written(tmp_path, text))
 
 
-def test_unreadable_file_produces_a_one_line_error(tmp_path):
+def test_unreadable_file_produces_a_one_line_error(tmp_path: Path) -> None:
     assert "No such file" in refusal(tmp_path / "none.mot")
     assert "allowed: .mot, .sto, .csv" in refusal(written(tmp_path, "", "walk.xlsx"))
     assert "endheader" in refusal(written(tmp_path, "time,a\n0,1\n1,2\n", "walk.mot"))
@@ -115,13 +117,13 @@ def test_unreadable_file_produces_a_one_line_error(tmp_path):
     ],
     ids=["cell", "name", "columns", "empty columns", "rows", "long name"],
 )
-def test_oversized_table_produces_a_short_error(tmp_path, text, message):
+def test_oversized_table_produces_a_short_error(tmp_path: Path, text: str, message: str) -> None:
     error = refusal(written(tmp_path, text))
     assert message in error
     assert len(error) < 500
 
 
-def test_oversized_file_is_not_read(tmp_path):
+def test_oversized_file_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "sparse.csv"
     with path.open("wb") as file:
         file.truncate(MAX_BYTES + 1)
@@ -133,7 +135,7 @@ def test_oversized_file_is_not_read(tmp_path):
     [b"0\n" * 200_000, b"0" * 400_000, b"0," * 200_000, b"time,a\n" + b"".join(b"%d,0\n" % i for i in range(50_000))],
     ids=["zero rows", "one cell", "zero columns", "valid"],
 )
-def test_memory_is_bounded_by_the_size_of_the_input(content):
+def test_memory_is_bounded_by_the_size_of_the_input(content: bytes) -> None:
     tracemalloc.start()
     try:
         parse_motion_table(content, "t.csv", is_csv=True)
@@ -146,7 +148,7 @@ def test_memory_is_bounded_by_the_size_of_the_input(content):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no device files")
-def test_device_or_pipe_is_refused_at_once(tmp_path):
+def test_device_or_pipe_is_refused_at_once(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.mot")
     assert "allowed: a regular file" in refusal(tmp_path / "pipe.mot")
     for endless in ("/dev/zero", "/proc/kmsg"):
@@ -170,7 +172,7 @@ lines = st.lists(
 
 
 @given(st.one_of(st.binary(max_size=200), lines.map(lambda text: text.encode("utf-8", "replace"))), st.booleans())
-def test_any_content_is_a_table_or_a_one_line_error(content, is_csv):
+def test_any_content_is_a_table_or_a_one_line_error(content: bytes, is_csv: bool) -> None:
     try:
         table = parse_motion_table(content, "name", is_csv=is_csv)
     except (ParameterError, UnicodeDecodeError) as error:

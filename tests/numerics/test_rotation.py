@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.math import RollPitchYaw, RotationMatrix
 
+from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import cross_matrix, rotation_vector, yaw_pitch
 
 angles = st.floats(-3.1, 3.1)
@@ -13,7 +14,7 @@ vectors = st.tuples(*[st.floats(-10.0, 10.0)] * 3).map(np.array)
 
 
 @given(rotations, vectors)
-def test_the_rotation_vector_turns_the_first_frame_into_the_second(R_WA, axis):
+def test_the_rotation_vector_turns_the_first_frame_into_the_second(R_WA: Array, axis: Array) -> None:
     length = np.linalg.norm(axis)
     angle = min(length, 3.0)
     if length < 1e-6:
@@ -22,7 +23,7 @@ def test_the_rotation_vector_turns_the_first_frame_into_the_second(R_WA, axis):
     np.testing.assert_allclose(rotation_vector(R_WA, turn @ R_WA), angle * axis / length, atol=1e-6)
 
 
-def rotation_of(vector):
+def rotation_of(vector: Array) -> Array:
     """Rodrigues' formula."""
     angle = np.linalg.norm(vector)
     K = cross_matrix(vector / angle)
@@ -30,16 +31,16 @@ def rotation_of(vector):
 
 
 @given(rotations)
-def test_the_rotation_vector_of_a_frame_to_itself_is_zero(R):
+def test_the_rotation_vector_of_a_frame_to_itself_is_zero(R: Array) -> None:
     np.testing.assert_allclose(rotation_vector(R, R), 0.0, atol=1e-12)
 
 
 @given(angles, angles)
-def test_yaw_pitch_is_a_turn_about_y_then_about_z(yaw, pitch):
+def test_yaw_pitch_is_a_turn_about_y_then_about_z(yaw: float, pitch: float) -> None:
     expected = RotationMatrix.MakeZRotation(yaw) @ RotationMatrix.MakeYRotation(pitch)
     np.testing.assert_allclose(yaw_pitch(yaw, pitch), expected.matrix(), atol=1e-15)
 
 
 @given(vectors, vectors)
-def test_the_cross_matrix_gives_the_cross_product(a, b):
+def test_the_cross_matrix_gives_the_cross_product(a: Array, b: Array) -> None:
     np.testing.assert_allclose(cross_matrix(np.array([a, b])) @ b, np.cross([a, b], b), atol=1e-12)

@@ -1,6 +1,7 @@
 """Run folders: complete or refused, never overwritten."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -14,13 +15,13 @@ from humanwalk.scenario import load_scenario
 
 
 @pytest.fixture
-def outcome(columns):
+def outcome(columns: tuple[str, ...]) -> Outcome:
     time = 0.004 * np.arange(50)
     signals = pa.table({TIME: time, **{name: np.full_like(time, i) for i, name in enumerate(columns)}})
     return Outcome(load_scenario("thesis", {"seed": "5", "duration": "0.5"}), signals, "completed", wall_time=1.0)
 
 
-def test_run_that_was_written_is_read_back(outcome, tmp_path):
+def test_run_that_was_written_is_read_back(outcome: Outcome, tmp_path: Path) -> None:
     outcome.write(tmp_path, "thesis")
     run = Run.open(tmp_path)
     assert run.scenario == outcome.scenario
@@ -35,7 +36,7 @@ def test_run_that_was_written_is_read_back(outcome, tmp_path):
     assert run.replay.parent == tmp_path
 
 
-def test_signals_know_where_they_come_from(outcome, tmp_path):
+def test_signals_know_where_they_come_from(outcome: Outcome, tmp_path: Path) -> None:
     metadata = json.loads(outcome.write(tmp_path, "thesis").signals.schema.metadata[b"humanwalk"])
     assert metadata["scenario"] == "thesis"
     assert metadata["seed"] == 5
@@ -43,7 +44,7 @@ def test_signals_know_where_they_come_from(outcome, tmp_path):
 
 
 @pytest.mark.parametrize("missing", [SCENARIO, SIGNALS, SUMMARY])
-def test_incomplete_folder_is_no_run(outcome, tmp_path, missing):
+def test_incomplete_folder_is_no_run(outcome: Outcome, tmp_path: Path, missing: str) -> None:
     outcome.write(tmp_path, "thesis")
     (tmp_path / missing).unlink()
     with pytest.raises(ParameterError, match=f"no run, {missing} is missing") as raised:
@@ -51,12 +52,12 @@ def test_incomplete_folder_is_no_run(outcome, tmp_path, missing):
     assert len(str(raised.value).splitlines()) == 1
 
 
-def test_missing_folder_is_no_run(tmp_path):
+def test_missing_folder_is_no_run(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="no run"):
         Run.open(tmp_path / "none")
 
 
-def test_new_folders_are_numbered(tmp_path, monkeypatch):
+def test_new_folders_are_numbered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names = [new_run_folder(None, "thesis")[0].name for _ in range(3)]
     assert names == ["thesis", "thesis-2", "thesis-3"]
@@ -64,20 +65,20 @@ def test_new_folders_are_numbered(tmp_path, monkeypatch):
     assert new_run_folder(None, "other")[0].name == "other"
 
 
-def test_a_file_in_the_way_is_not_overwritten(tmp_path, monkeypatch):
+def test_a_file_in_the_way_is_not_overwritten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "runs").mkdir()
     (tmp_path / "runs" / "thesis").write_text("mine")
     assert new_run_folder(None, "thesis")[0].name == "thesis-2"
 
 
-def test_wanted_folder_may_be_new_or_empty(tmp_path):
+def test_wanted_folder_may_be_new_or_empty(tmp_path: Path) -> None:
     wanted = tmp_path / "a" / "b"
     assert new_run_folder(wanted, "thesis") == (wanted, [wanted, wanted.parent])
     assert new_run_folder(wanted, "thesis") == (wanted, [])
 
 
-def test_wanted_folder_that_holds_something_is_refused(tmp_path):
+def test_wanted_folder_that_holds_something_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ParameterError, match="holds files already") as raised:
         new_run_folder(tmp_path, "thesis")
@@ -85,7 +86,7 @@ def test_wanted_folder_that_holds_something_is_refused(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
 
-def test_wanted_folder_that_is_a_file_is_refused(tmp_path):
+def test_wanted_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ParameterError):
         new_run_folder(tmp_path / "mine", "thesis")

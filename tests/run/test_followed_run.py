@@ -3,15 +3,20 @@
 import logging
 import shutil
 import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.opensim_names import COORDINATES
 from humanwalk.cli.main import app, main
 from humanwalk.motion.followed import REQUIRED_JOINTS
 from humanwalk.motion.motion_table import MotionTable, storage_text
+from humanwalk.motion.recorded_motion import RecordedMotion
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import file_hash, scenario_hash
@@ -22,7 +27,7 @@ from humanwalk.scenario import load_scenario
 TIME = np.arange(0, 0.301, 0.02)
 
 
-def bend(knee=20.0):
+def bend(knee: float = 20.0) -> dict[str, Array]:
     """Knees bend by some degrees within 0.3 s; OpenSim's names."""
     columns = {COORDINATES[name][0]: np.zeros_like(TIME) for name in REQUIRED_JOINTS}
     for side in "rl":
@@ -30,22 +35,22 @@ def bend(knee=20.0):
     return columns
 
 
-def write_mot(path, columns):
+def write_mot(path: Path, columns: dict[str, Array]) -> Path:
     path.write_text(storage_text("t", MotionTable(tuple(columns), TIME, np.column_stack(list(columns.values())), True)))
     return path
 
 
-def following(recording, more=""):
+def following(recording: Path | str, more: str = "") -> dict[str, str]:
     """Overrides for a scenario that follows a recording."""
     return {"controller": f"{{recorded: {{angles: {recording}, {more}}}}}"}
 
 
-def motion_of(scenario):
+def motion_of(scenario: Any) -> RecordedMotion:
     return scenario.controller.motion(scenario.subject, scenario.terrain)
 
 
 @pytest.fixture(scope="module")
-def walked(tmp_path_factory):
+def walked(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The run of a followed recording with a mapping, walked by the command; both files are gone since."""
     lab = tmp_path_factory.mktemp("lab")
     recording = write_mot(lab / "Trial 3.MOT", bend())
@@ -60,12 +65,12 @@ def walked(tmp_path_factory):
 
 
 @pytest.fixture
-def run(walked, tmp_path):
+def run(walked: tuple[Path, tuple[str, str]], tmp_path: Path) -> Run:
     """A copy elsewhere, to change."""
     return Run.open(shutil.copytree(walked[0], tmp_path / "elsewhere"))
 
 
-def test_recording_and_mapping_are_kept_with_their_hashes(run, walked):
+def test_recording_and_mapping_are_kept_with_their_hashes(run: Any, walked: tuple[Path, tuple[str, str]]) -> None:
     hashes = run.summary["provenance"]
     assert (hashes["files_sha256"]["angles"], hashes["files_sha256"]["mapping"]) == walked[1]
     assert file_hash(str(run.path / "angles.mot")) == hashes["files_sha256"]["angles"]
@@ -80,12 +85,12 @@ def test_recording_and_mapping_are_kept_with_their_hashes(run, walked):
     }
 
 
-def test_moved_run_is_repeated_to_the_bit(run):
+def test_moved_run_is_repeated_to_the_bit(run: Run) -> None:
     result = reproduce(run)
     assert (result.bits_agree, result.notes) == (True, ())
 
 
-def test_moved_run_is_walked_again_from_its_scenario(run, tmp_path, monkeypatch):
+def test_moved_run_is_walked_again_from_its_scenario(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     quick = ["--no-replay", "--no-plots", "--duration", "0.02"]
     result = CliRunner().invoke(app, ["walk", str(run.path / "scenario.yaml"), "-o", "again", *quick])
@@ -96,42 +101,42 @@ def test_moved_run_is_walked_again_from_its_scenario(run, tmp_path, monkeypatch)
 
 
 @pytest.mark.parametrize("name", ["angles.mot", "mapping.yaml"])
-def test_copy_that_was_changed_is_noted(run, name):
+def test_copy_that_was_changed_is_noted(run: Run, name: str) -> None:
     (run.path / name).write_text((run.path / name).read_text() + "\n")
     assert [note for note in reproduce(run).notes if note.endswith(f"{name} was changed since the run")]
 
 
-def test_missing_copy_is_a_one_line_error(run):
+def test_missing_copy_is_a_one_line_error(run: Run) -> None:
     (run.path / "angles.mot").unlink()
     with pytest.raises(ParameterError, match=r"angles\.mot is gone"):
         reproduce(Run.open(run.path))
 
 
-def test_hash_of_a_scenario_is_independent_of_the_paths_of_its_files(tmp_path):
+def test_hash_of_a_scenario_is_independent_of_the_paths_of_its_files(tmp_path: Path) -> None:
     here, there = (load_scenario("thesis", following(f"{folder}/t.mot")) for folder in ("a", "b"))
     assert scenario_hash(here) == scenario_hash(there)
     assert scenario_hash(here) != scenario_hash(load_scenario("thesis", following("a/t.mot", "ease_in: 0.5")))
 
 
-def test_files_of_a_scenario_stand_beside_it(tmp_path, monkeypatch):
+def test_files_of_a_scenario_stand_beside_it(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "lab").mkdir()
     (tmp_path / "lab" / "mine.yaml").write_text("controller: {recorded: {angles: t.mot, mapping: ../map.yaml}}\n")
     monkeypatch.chdir(tmp_path)
     recorded = load_scenario("lab/mine.yaml").controller
-    assert (recorded.angles, recorded.mapping) == ("lab/t.mot", "lab/../map.yaml")
+    assert (recorded.angles, recorded.mapping) == ("lab/t.mot", "lab/../map.yaml")  # type: ignore[attr-defined]
     # What is set on the command line is said from where one stands; a full path stays.
     other = load_scenario("lab/mine.yaml", {"controller.recorded.angles": "other.mot"})
-    assert other.controller.angles == "other.mot"
+    assert other.controller.angles == "other.mot"  # type: ignore[attr-defined]
     (tmp_path / "lab" / "mine.yaml").write_text(f"controller: {{recorded: {{angles: {tmp_path}/t.mot}}}}\n")
-    assert load_scenario("lab/mine.yaml").controller.angles == f"{tmp_path}/t.mot"
+    assert load_scenario("lab/mine.yaml").controller.angles == f"{tmp_path}/t.mot"  # type: ignore[attr-defined]
 
 
-def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
+def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path: Path) -> None:
     recording = write_mot(tmp_path / "t.mot", bend())
     outcome = simulate(load_scenario("thesis", following(recording) | {"duration": "0.01"}))
     recording.rename(tmp_path / "moved.mot")
     run = outcome.save(tmp_path / "run")
-    assert run.scenario.controller.angles == str(run.path / "angles.mot")
+    assert run.scenario.controller.angles == str(run.path / "angles.mot")  # type: ignore[attr-defined]
     assert run.summary["provenance"]["files_sha256"]["angles"] is None
     with pytest.raises(ParameterError, match=r"angles\.mot is gone"):
         reproduce(run)
@@ -141,7 +146,7 @@ def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def kinematic(tmp_path_factory):
+def kinematic(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, str]:
     """The run of a recording that is shown without physics, and what was printed."""
     folder = tmp_path_factory.mktemp("kinematic")
     recording = write_mot(folder / "t.mot", bend())
@@ -150,7 +155,7 @@ def kinematic(tmp_path_factory):
     return Run.open(folder / "run"), result.stderr
 
 
-def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic):
+def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic: tuple[Run, str]) -> None:
     run, printed = kinematic
     assert "no physics" in printed
     assert {entry.name for entry in run.path.iterdir()} == {
@@ -164,9 +169,9 @@ def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic):
     assert run.summary["end"] == "completed"
 
 
-def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
+def test_kinematic_run_moves_exactly_as_recorded(kinematic: tuple[Run, str], joints: JointMap) -> None:
     run, _ = kinematic
-    motion = run.scenario.controller.motion(run.scenario.subject, run.scenario.terrain)
+    motion = run.scenario.controller.motion(run.scenario.subject, run.scenario.terrain)  # type: ignore[attr-defined]
     for row in (0, 20, -1):
         angles, rates = motion.joints(run.time[row])
         for i, name in enumerate(joints.names):
@@ -178,7 +183,7 @@ def test_kinematic_run_moves_exactly_as_recorded(kinematic, joints):
     assert np.rad2deg(run["RightLegTibiaMotion.angle"][-1]) > 5.0
 
 
-def test_kinematic_run_claims_no_force_torque_or_effort(kinematic):
+def test_kinematic_run_claims_no_force_torque_or_effort(kinematic: tuple[Run, str]) -> None:
     run, _ = kinematic
     assert [name for name in run.signals.column_names if name.endswith(("_N", "_N_m", "saturated", "loaded"))] == []
     summary = run.summary
@@ -192,13 +197,15 @@ def test_kinematic_run_claims_no_force_torque_or_effort(kinematic):
 @pytest.mark.parametrize(
     "command", [("plot",), ("report",), ("export", "--to", "opensim"), ("export", "--to", "c3d")], ids=str
 )
-def test_what_needs_forces_refuses_a_kinematic_run_in_a_line(kinematic, command):
+def test_what_needs_forces_refuses_a_kinematic_run_in_a_line(
+    kinematic: tuple[Run, str], command: tuple[str, ...]
+) -> None:
     run, _ = kinematic
     with pytest.raises(ParameterError, match="a kinematic run has no forces and no torques; allowed"):
         CliRunner().invoke(app, [command[0], str(run.path), *command[1:]], catch_exceptions=False)
 
 
-def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
+def test_kinematic_run_is_exported_and_repeated(kinematic: tuple[Run, str], tmp_path: Path) -> None:
     run, _ = kinematic
     result = CliRunner().invoke(app, ["export", str(run.path), "--to", "csv", "-o", str(tmp_path)])
     assert result.exit_code == 0, result.output
@@ -212,12 +219,12 @@ def test_kinematic_run_is_exported_and_repeated(kinematic, tmp_path):
         ({"controller.recorded.angles": "t.mot"}, "controller is 'thesis'"),
     ],
 )
-def test_invalid_recorded_controller_is_refused(overrides, said):
+def test_invalid_recorded_controller_is_refused(overrides: dict[str, str], said: str) -> None:
     with pytest.raises(ParameterError, match=said):
         load_scenario("thesis", overrides)
 
 
-def test_kinematic_without_a_recording_is_refused(tmp_path):
+def test_kinematic_without_a_recording_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="--kinematic: no recording"):
         CliRunner().invoke(app, ["walk", "--kinematic", "-o", str(tmp_path / "run")], catch_exceptions=False)
     assert not (tmp_path / "run").exists()
@@ -226,11 +233,13 @@ def test_kinematic_without_a_recording_is_refused(tmp_path):
 # Angles beyond a joint's range.
 
 
-def test_angle_beyond_its_range_is_clamped_with_a_one_line_warning(tmp_path, caplog, joints):
+def test_angle_beyond_its_range_is_clamped_with_a_one_line_warning(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, joints: JointMap
+) -> None:
     columns = bend() | {"knee_angle_r": np.full_like(TIME, -3.0), "Head_Motion": np.full_like(TIME, 1.0)}
     scenario = load_scenario("thesis", following(write_mot(tmp_path / "t.mot", columns)))
     with caplog.at_level(logging.WARNING):
-        motion = scenario.controller.motion(scenario.subject, scenario.terrain)
+        motion = scenario.controller.motion(scenario.subject, scenario.terrain)  # type: ignore[attr-defined]
     (record,) = caplog.records
     said = record.getMessage()
     knee = joints.names.index("RightLegTibiaMotion")
@@ -241,7 +250,9 @@ def test_angle_beyond_its_range_is_clamped_with_a_one_line_warning(tmp_path, cap
     np.testing.assert_array_equal(motion.angles[:, knee], joints.lower[knee])
 
 
-def test_command_tells_it_in_one_line_of_its_own(tmp_path, monkeypatch, capfd):
+def test_command_tells_it_in_one_line_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     recording = write_mot(tmp_path / "t.mot", bend() | {"knee_angle_r": np.full_like(TIME, -3.0)})
     arguments = ["walk", "--follow", str(recording), "--kinematic", "-o", str(tmp_path / "run"), "--no-replay"]
     monkeypatch.setattr(sys, "argv", ["humanwalk", *arguments])
@@ -253,7 +264,7 @@ def test_command_tells_it_in_one_line_of_its_own(tmp_path, monkeypatch, capfd):
     assert logging.getLogger("humanwalk").propagate
 
 
-def test_angles_within_their_ranges_are_not_spoken_of(tmp_path, caplog):
+def test_angles_within_their_ranges_are_not_spoken_of(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.WARNING):
         motion_of(load_scenario("thesis", following(write_mot(tmp_path / "t.mot", bend()))))
     assert caplog.records == []

@@ -3,6 +3,9 @@
 import json
 import os
 import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -25,25 +28,25 @@ DURATION = 0.05
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run as the simulation leaves it."""
     outcome = simulate(load_scenario("thesis", {"duration": str(DURATION)}))
     return outcome.save(tmp_path_factory.mktemp("made") / "run").path
 
 
 @pytest.fixture
-def folder(made, tmp_path):
+def folder(made: Path, tmp_path: Path) -> Path:
     """A copy of it to change."""
     return shutil.copytree(made, tmp_path / "run")
 
 
-def read(folder):
+def read(folder: Path) -> Any:
     """Everything that is read of a run."""
     run = Run.open(folder)
     return run.summary, run.scenario, run.signals
 
 
-def refusal(use, *arguments) -> str:
+def refusal(use: Callable[..., Any], *arguments: Any) -> str:
     with pytest.raises(ParameterError) as raised:
         use(*arguments)
     message = str(raised.value)
@@ -52,7 +55,7 @@ def refusal(use, *arguments) -> str:
     return message
 
 
-def is_read(folder) -> bool:
+def is_read(folder: Path) -> bool:
     """Whether a run is read; otherwise it is refused in one line, and nothing else is raised."""
     try:
         read(folder)
@@ -62,7 +65,7 @@ def is_read(folder) -> bool:
     return True
 
 
-def test_run_as_it_was_written_is_read(folder):
+def test_run_as_it_was_written_is_read(folder: Path) -> None:
     assert is_read(folder)
 
 
@@ -88,12 +91,12 @@ def test_run_as_it_was_written_is_read(folder):
     ],
     ids=lambda content: repr(content[:8]),
 )
-def test_invalid_summary_is_refused(folder, content):
+def test_invalid_summary_is_refused(folder: Path, content: bytes) -> None:
     (folder / SUMMARY).write_bytes(content)
     assert SUMMARY in refusal(read, folder)
 
 
-def test_summary_with_a_byte_order_mark_is_read(folder):
+def test_summary_with_a_byte_order_mark_is_read(folder: Path) -> None:
     (folder / SUMMARY).write_bytes(b"\xef\xbb\xbf" + (folder / SUMMARY).read_bytes())
     assert is_read(folder)
 
@@ -102,7 +105,7 @@ WRONG = ["x", -1.5, True, None, [], {}, {"right": 1}, float("nan"), float("inf")
 
 
 @pytest.mark.parametrize("value", WRONG, ids=lambda value: repr(value)[:12])
-def test_field_of_another_type_is_refused_by_its_name(folder, value):
+def test_field_of_another_type_is_refused_by_its_name(folder: Path, value: Any) -> None:
     summary = json.loads((folder / SUMMARY).read_text())
     refused = set()
     for key in summary:
@@ -116,14 +119,14 @@ def test_field_of_another_type_is_refused_by_its_name(folder, value):
 
 
 @pytest.mark.parametrize("field", ["signals_sha256", "versions", "seed"])
-def test_provenance_without_a_field_is_refused(folder, field):
+def test_provenance_without_a_field_is_refused(folder: Path, field: str) -> None:
     summary = json.loads((folder / SUMMARY).read_text())
     del summary["provenance"][field]
     (folder / SUMMARY).write_text(json.dumps(summary))
     assert f"provenance: {field} is missing" in refusal(read, folder)
 
 
-def test_field_and_joint_that_are_unknown_are_refused_without_their_control_characters(folder):
+def test_field_and_joint_that_are_unknown_are_refused_without_their_control_characters(folder: Path) -> None:
     summary = json.loads((folder / SUMMARY).read_text())
     (folder / SUMMARY).write_text(json.dumps(summary | {"\x1b]0;x\x07": 1}))
     assert r"\x1b]0;x\x07 is no field" in refusal(read, folder)
@@ -134,7 +137,7 @@ def test_field_and_joint_that_are_unknown_are_refused_without_their_control_char
 # The signals.
 
 
-def rewrite(folder, change):
+def rewrite(folder: Path, change: Callable[..., Any]) -> None:
     """Change the signals and update their hash, as an attacker would."""
     table = change(pq.read_table(folder / SIGNALS))
     pq.write_table(table, folder / SIGNALS)
@@ -145,12 +148,12 @@ def rewrite(folder, change):
     (folder / SUMMARY).write_text(json.dumps(summary))
 
 
-def replaced(table, name, values):
+def replaced(table: pa.Table, name: str, values: Any) -> pa.Table:
     return table.set_column(table.column_names.index(name), name, [values])
 
 
-def with_value(name, row, value):
-    def change(table):
+def with_value(name: str, row: int, value: float) -> Callable[..., Any]:
+    def change(table: pa.Table) -> pa.Table:
         values = table[name].to_numpy().copy()
         values[row] = value
         return replaced(table, name, values)
@@ -158,7 +161,7 @@ def with_value(name, row, value):
     return change
 
 
-def with_type(kind):
+def with_type(kind: pa.DataType | pa.ListType | pa.StructType) -> Callable[..., Any]:
     return lambda table: replaced(table, "com.x_m", pa.array([None] * table.num_rows, kind))
 
 
@@ -190,13 +193,13 @@ KNEE = "RightLegTibiaMotion.angle_rad"
         (lambda table: replaced(table, TIME, np.zeros(table.num_rows)), "not a multiple"),
     ],
 )
-def test_invalid_record_is_refused(folder, change, said):
+def test_invalid_record_is_refused(folder: Path, change: Callable[..., Any], said: str) -> None:
     rewrite(folder, change)
     assert said in refusal(read, folder)
 
 
-def test_zero_quaternion_is_refused(folder):
-    def zero(table):
+def test_zero_quaternion_is_refused(folder: Path) -> None:
+    def zero(table: pa.Table) -> pa.Table:
         for axis in "wxyz":
             table = replaced(table, f"pelvis.quaternion_{axis}", np.zeros(table.num_rows))
         return table
@@ -205,7 +208,9 @@ def test_zero_quaternion_is_refused(folder):
     assert "pelvis.quaternion is zero" in refusal(read, folder)
 
 
-def test_record_of_too_many_rows_or_columns_is_refused_before_it_is_loaded(folder, monkeypatch):
+def test_record_of_too_many_rows_or_columns_is_refused_before_it_is_loaded(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(pq.ParquetFile, "read", lambda *arguments, **more: pytest.fail("loaded"))
     pq.write_table(pa.table({TIME: np.zeros(2_000_000)}), folder / SIGNALS)
     assert f"2000000 rows; allowed: 1 to {MAX_ROWS}" in refusal(read, folder)
@@ -213,19 +218,19 @@ def test_record_of_too_many_rows_or_columns_is_refused_before_it_is_loaded(folde
     assert f"{MAX_COLUMNS + 1} columns" in refusal(read, folder)
 
 
-def test_record_that_was_changed_is_refused(folder):
+def test_record_that_was_changed_is_refused(folder: Path) -> None:
     table = pq.read_table(folder / SIGNALS)
     pq.write_table(with_value(KNEE, 3, 0.1)(table), folder / SIGNALS)
     assert "changed since the run" in refusal(read, folder)
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"PAR1PAR1", b"not Parquet", b"PAR1" + b"\xff" * 100 + b"PAR1"])
-def test_invalid_parquet_file_is_refused(folder, content):
+def test_invalid_parquet_file_is_refused(folder: Path, content: bytes) -> None:
     (folder / SIGNALS).write_bytes(content)
     assert "not a Parquet file" in refusal(read, folder)
 
 
-def test_record_ends_before_a_state_that_has_run_away():
+def test_record_ends_before_a_state_that_has_run_away() -> None:
     table = pa.table({TIME: np.arange(6.0), "a": [0.0, 1.0, 2.0, 1e12, np.nan, 0.0], "b": [0.0] * 6})
     assert before_runaway(table).to_pydict() == {TIME: [0.0, 1.0, 2.0], "a": [0.0, 1.0, 2.0], "b": [0.0] * 3}
     assert before_runaway(table.slice(0, 3)).equals(table.slice(0, 3))
@@ -237,7 +242,7 @@ def test_record_ends_before_a_state_that_has_run_away():
 
 @pytest.mark.parametrize("name", [SUMMARY, SIGNALS, SCENARIO])
 @pytest.mark.parametrize("seed", range(40))
-def test_flipped_bits_are_read_or_refused(folder, name, seed):
+def test_flipped_bits_are_read_or_refused(folder: Path, name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     content = bytearray((folder / name).read_bytes())
     for place in random.integers(0, len(content), random.integers(1, 4)):
@@ -248,7 +253,7 @@ def test_flipped_bits_are_read_or_refused(folder, name, seed):
 
 @pytest.mark.parametrize("name", [SUMMARY, SIGNALS, SCENARIO])
 @pytest.mark.parametrize("seed", range(20))
-def test_truncated_file_is_read_or_refused(folder, name, seed):
+def test_truncated_file_is_read_or_refused(folder: Path, name: str, seed: int) -> None:
     content = (folder / name).read_bytes()
     length = int(np.random.default_rng(seed).integers(len(content)))
     (folder / name).write_bytes(content[:length])
@@ -259,7 +264,7 @@ def test_truncated_file_is_read_or_refused(folder, name, seed):
 
 
 @pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
-def test_link_out_of_the_folder_is_refused(folder, tmp_path, name):
+def test_link_out_of_the_folder_is_refused(folder: Path, tmp_path: Path, name: str) -> None:
     (folder / name).rename(tmp_path / name)
     (folder / name).symlink_to(tmp_path / name)
     assert "leads out of" in refusal(read, folder)
@@ -267,7 +272,9 @@ def test_link_out_of_the_folder_is_refused(folder, tmp_path, name):
 
 @pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
 @pytest.mark.parametrize("kind", ["fifo", "folder", "device"])
-def test_device_or_pipe_or_folder_is_refused_without_waiting(folder, name, kind):
+def test_device_or_pipe_or_folder_is_refused_without_waiting(
+    folder: Path, name: str, kind: pa.DataType | pa.ListType | pa.StructType
+) -> None:
     (folder / name).unlink()
     if kind == "fifo":
         os.mkfifo(folder / name)
@@ -280,7 +287,7 @@ def test_device_or_pipe_or_folder_is_refused_without_waiting(folder, name, kind)
 
 @pytest.mark.parametrize("file", ["/dev/zero", "/etc/passwd", "../outside.mot", "linked.mot"])
 @pytest.mark.parametrize("field", ["angles", "mapping"])
-def test_recording_is_followed_inside_the_folder_only(folder, tmp_path, file, field):
+def test_recording_is_followed_inside_the_folder_only(folder: Path, tmp_path: Path, file: str, field: str) -> None:
     (tmp_path / "outside.mot").write_text("")
     (folder / "linked.mot").symlink_to(tmp_path / "outside.mot")
     recorded = json.dumps({"angles": "own.mot"} | {field: file})
@@ -288,7 +295,7 @@ def test_recording_is_followed_inside_the_folder_only(folder, tmp_path, file, fi
     assert "leads out of" in refusal(read, folder)
 
 
-def test_results_are_written_inside_the_folder_only(folder, tmp_path):
+def test_results_are_written_inside_the_folder_only(folder: Path, tmp_path: Path) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     for name in ("plots", "csv"):
@@ -299,7 +306,7 @@ def test_results_are_written_inside_the_folder_only(folder, tmp_path):
     assert list(elsewhere.iterdir()) == []
 
 
-def test_replay_is_read_from_the_folder_only(folder, tmp_path):
+def test_replay_is_read_from_the_folder_only(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text("x")
     (folder / REPLAY).symlink_to(tmp_path / "page.html")
     assert "leads out of" in refusal(lambda: Run.open(folder).replay)
@@ -309,10 +316,10 @@ def test_replay_is_read_from_the_folder_only(folder, tmp_path):
 
 
 @pytest.fixture
-def walk_of(walk, tmp_path):
+def walk_of(walk: Callable[..., Any], tmp_path: Path) -> Callable[..., Any]:
     """A run of several strides, whose signals are changed."""
 
-    def make(change):
+    def make(change: Callable[..., Any]) -> Run:
         signals = walk()
         zero = np.zeros(signals.num_rows)
         for name in sorted(required_columns(physics=True).difference(signals.column_names)):
@@ -323,10 +330,10 @@ def walk_of(walk, tmp_path):
     return make
 
 
-def absurd(seed):
+def absurd(seed: int) -> Callable[..., Any]:
     """Replace random columns by constants, noise or spikes up to the largest value."""
 
-    def change(signals):
+    def change(signals: pa.Table) -> pa.Table:
         random = np.random.default_rng(seed)
         names = [name for name in signals.column_names if name != TIME and "quaternion" not in name]
         for name in random.choice(names, random.integers(1, 40), replace=False):
@@ -341,13 +348,13 @@ def absurd(seed):
 
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_absurd_values_are_reported_drawn_and_exported_or_refused(walk_of, seed):
+def test_absurd_values_are_reported_drawn_and_exported_or_refused(walk_of: Callable[..., Any], seed: int) -> None:
     run = walk_of(absurd(seed))
     plot = list(PLOTS)[seed % len(PLOTS)]
     uses = [lambda: to_json(compare_run(run)), lambda: write_plots(run, [plot])]
-    uses += [lambda form=form: export_run(run, form) for form in ("csv", "mat", "opensim")]
+    uses += [lambda form=form: export_run(run, form) for form in ("csv", "mat", "opensim")]  # type: ignore[misc]
     for use in uses:
         try:
-            use()
+            use()  # type: ignore[no-untyped-call]
         except ParameterError as error:
             assert str(error).isprintable()

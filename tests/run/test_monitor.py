@@ -3,12 +3,14 @@
 import os
 import signal
 import threading
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import EventStatus
+from pydrake.systems.framework import Context, EventStatus
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.limbs import PELVIS
@@ -21,7 +23,7 @@ LEVEL = Plane()
 
 
 @pytest.fixture(scope="module")
-def falling_plant():
+def falling_plant() -> MultibodyPlant:
     """A body in free fall."""
     plant = MultibodyPlant(time_step=0.001)
     add_human(plant, Subject())
@@ -29,7 +31,7 @@ def falling_plant():
     return plant
 
 
-def context_at(plant, height: float, time: float = 0.0, x: float = 0.0):
+def context_at(plant: MultibodyPlant, height: float, time: float = 0.0, x: float = 0.0) -> Context:
     context = plant.CreateDefaultContext()
     state = plant.GetPositionsAndVelocities(context)
     place = plant.GetBodyByName(PELVIS).floating_positions_start() + 4
@@ -40,7 +42,7 @@ def context_at(plant, height: float, time: float = 0.0, x: float = 0.0):
     return context
 
 
-def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant):
+def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant: MultibodyPlant) -> None:
     monitor = Monitor(falling_plant, LEVEL)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
     simulator.set_monitor(monitor)
@@ -51,7 +53,7 @@ def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant):
     assert status.reason() == status.ReturnReason.kReachedTerminationCondition
 
 
-def test_fall_is_relative_to_the_initial_height(falling_plant):
+def test_fall_is_relative_to_the_initial_height(falling_plant: MultibodyPlant) -> None:
     monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 2.0))
     assert monitor(context_at(falling_plant, 1.25, 0.1)).severity() == EventStatus.Severity.kSucceeded
@@ -59,7 +61,7 @@ def test_fall_is_relative_to_the_initial_height(falling_plant):
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_value_that_is_not_finite_ends_the_simulation(falling_plant, value):
+def test_value_that_is_not_finite_ends_the_simulation(falling_plant: MultibodyPlant, value: float) -> None:
     monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 1.0))
     status = monitor(context_at(falling_plant, value, 0.1))
@@ -67,7 +69,7 @@ def test_value_that_is_not_finite_ends_the_simulation(falling_plant, value):
     assert monitor.reason == "not a number"
 
 
-def test_progress_is_reported_at_every_check(falling_plant):
+def test_progress_is_reported_at_every_check(falling_plant: MultibodyPlant) -> None:
     times = []
     monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
@@ -78,14 +80,14 @@ def test_progress_is_reported_at_every_check(falling_plant):
     assert monitor.reason == ""
 
 
-def test_advance_ends_at_its_time_or_at_the_fall(falling_plant):
+def test_advance_ends_at_its_time_or_at_the_fall(falling_plant: MultibodyPlant) -> None:
     times = []
     monitor = Monitor(falling_plant, LEVEL, on_progress=times.append)
     simulator = Simulator(falling_plant, context_at(falling_plant, 1.0))
     simulator.Initialize()
     monitor.advance(simulator, 0.035)
     assert simulator.get_context().get_time() == 0.035
-    np.testing.assert_allclose(times, [0.0, 0.01, 0.02, 0.03], atol=1e-12)
+    np.testing.assert_allclose(times, [0.0, 0.01, 0.02, 0.03], atol=1e-12)  # type: ignore[arg-type]
     monitor.advance(simulator, 5.0)
     assert monitor.reason == "fell"
     expected = np.sqrt(2 * (1.0 - FALL_HEIGHT_SHARE) / GRAVITY)
@@ -94,7 +96,7 @@ def test_advance_ends_at_its_time_or_at_the_fall(falling_plant):
     assert simulator.get_context().get_time() < 1.0
 
 
-def test_checks_add_no_steps(falling_plant):
+def test_checks_add_no_steps(falling_plant: MultibodyPlant) -> None:
     """Checks are exactly at the systems' own times; any other time would be another step."""
     counts = []
     for checks in (False, True):
@@ -108,7 +110,7 @@ def test_checks_add_no_steps(falling_plant):
     assert counts[0] == counts[1]
 
 
-def test_height_is_measured_above_the_terrain_under_the_pelvis(falling_plant):
+def test_height_is_measured_above_the_terrain_under_the_pelvis(falling_plant: MultibodyPlant) -> None:
     """Uphill a standing walker is higher than at its start; downhill it is lower and has not fallen."""
     slope = Plane(slope=0.2)
     for x, has_fallen in ((-5.0, False), (5.0, False)):
@@ -123,7 +125,7 @@ def test_height_is_measured_above_the_terrain_under_the_pelvis(falling_plant):
 
 
 @pytest.fixture
-def handlers():
+def handlers() -> Iterator[list[Any]]:
     """Python's own handlers, and those of before at the end."""
     before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
     caught = []
@@ -136,8 +138,8 @@ def handlers():
 
 @pytest.mark.parametrize("number", STOP_SIGNALS)
 def test_first_signal_ends_the_simulation_at_the_next_check_and_the_second_acts_as_before(
-    falling_plant, handlers, number
-):
+    falling_plant: MultibodyPlant, handlers: list[Any], number: Any
+) -> None:
     monitor = Monitor(falling_plant, LEVEL)
     before = signal.getsignal(number)
     with monitor.stop_on_signal():
@@ -152,7 +154,7 @@ def test_first_signal_ends_the_simulation_at_the_next_check_and_the_second_acts_
     assert signal.getsignal(number) is before
 
 
-def test_signal_that_is_ignored_stays_ignored(falling_plant, handlers):
+def test_signal_that_is_ignored_stays_ignored(falling_plant: MultibodyPlant, handlers: list[Any]) -> None:
     """As SIGHUP under nohup."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     monitor = Monitor(falling_plant, LEVEL)
@@ -163,26 +165,28 @@ def test_signal_that_is_ignored_stays_ignored(falling_plant, handlers):
 
 
 @pytest.mark.parametrize("number", STOP_SIGNALS)
-def test_held_signal_acts_at_the_end_of_the_block(handlers, number):
+def test_held_signal_acts_at_the_end_of_the_block(handlers: list[Any], number: Any) -> None:
     with held_signals():
         os.kill(os.getpid(), number)
         assert handlers == []
     assert handlers == [number]
 
 
-def test_simulation_in_another_thread_leaves_the_signals_alone(falling_plant, handlers):
-    def simulate():
+def test_simulation_in_another_thread_leaves_the_signals_alone(
+    falling_plant: MultibodyPlant, handlers: list[Any]
+) -> None:
+    def simulate() -> None:
         with Monitor(falling_plant, LEVEL).stop_on_signal():
             seen.append(signal.getsignal(signal.SIGINT))
 
-    seen: list = []
+    seen: list = []  # type: ignore[type-arg]
     thread = threading.Thread(target=simulate)
     thread.start()
     thread.join()
     assert seen == [signal.getsignal(signal.SIGINT)]
 
 
-def test_without_a_plant_nothing_falls_and_an_interrupt_still_ends(falling_plant):
+def test_without_a_plant_nothing_falls_and_an_interrupt_still_ends(falling_plant: MultibodyPlant) -> None:
     monitor = Monitor(ConstantVectorSource([0.0]), LEVEL)
     assert monitor(context_at(falling_plant, 0.01)).severity() == EventStatus.Severity.kSucceeded
     monitor.interrupted = True

@@ -1,5 +1,7 @@
 """Every scenario that is shipped walks, and what it leaves is a run."""
 
+from pathlib import Path
+
 import pytest
 
 from humanwalk.choices import ThesisController
@@ -8,7 +10,7 @@ from humanwalk.scenario import load_scenario, shipped_scenarios
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())
-def test_shipped_scenario_walks_for_a_moment(name, tmp_path):
+def test_shipped_scenario_walks_for_a_moment(name: str, tmp_path: Path) -> None:
     scenario = load_scenario(name, {"duration": "0.1"})
     outcome = simulate(scenario)
     assert outcome.end == "completed"

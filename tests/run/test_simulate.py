@@ -2,9 +2,12 @@
 
 import os
 import signal
+from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from pydrake.systems.framework import Context
 from rich.console import Console
 
 from humanwalk.body.contact import FRICTION, SOLE_PARTS
@@ -14,9 +17,11 @@ from humanwalk.cli.walk import summary_table
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME, matrix
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.simulate import prepare, simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.sides import Side
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 
 GRAVITY = 9.81
@@ -25,13 +30,13 @@ STRIDE_TIME = FootPathParameters().walked_stride / SPEED
 SIDES = ("right", "left")
 
 
-def thesis(duration: float, **overrides: str):
+def thesis(duration: float, **overrides: str) -> Any:
     fields = {key.replace("__", "."): value for key, value in overrides.items()}
     return load_scenario("thesis", {"duration": str(duration)} | fields)
 
 
 @pytest.fixture(scope="module")
-def walk():
+def walk() -> Any:
     """The thesis' walk: the ramp, and two whole strides from 0.6 s on."""
     times = []
     outcome = simulate(thesis(0.6 + 2 * STRIDE_TIME), on_progress=times.append)
@@ -39,7 +44,7 @@ def walk():
 
 
 @pytest.fixture(scope="module")
-def strides(walk):
+def strides(walk: Any) -> Any:
     """Rows of whole strides: means over them are those of the steady walk."""
     time = walk[0].signals[TIME].to_numpy()
     return (time >= 0.6 - 1e-9) & (time < 0.6 + 2 * STRIDE_TIME)
@@ -48,7 +53,7 @@ def strides(walk):
 # The walk.
 
 
-def test_walk_lasts_for_its_duration(walk):
+def test_walk_lasts_for_its_duration(walk: Any) -> None:
     outcome, times = walk
     time = outcome.signals[TIME].to_numpy()
     assert outcome.end == "completed"
@@ -60,19 +65,19 @@ def test_walk_lasts_for_its_duration(walk):
     assert times[-1] == pytest.approx(outcome.scenario.duration, abs=0.02)
 
 
-def test_every_number_is_finite(walk):
+def test_every_number_is_finite(walk: Any) -> None:
     for name in walk[0].signals.column_names:
         assert np.isfinite(walk[0].signals[name].to_numpy()).all(), name
 
 
-def test_speed_is_the_one_that_is_asked_for(walk, strides):
+def test_speed_is_the_one_that_is_asked_for(walk: Any, strides: Any) -> None:
     signals = walk[0].signals
     time, x = signals[TIME].to_numpy()[strides], signals["com.x_m"].to_numpy()[strides]
     assert (x[-1] - x[0]) / (time[-1] - time[0]) == pytest.approx(SPEED, rel=0.05)
     assert walk[0].summary("thesis")["mean_speed_m_s"] == pytest.approx(SPEED, rel=0.05)
 
 
-def test_pelvis_keeps_to_its_reference(walk):
+def test_pelvis_keeps_to_its_reference(walk: Any) -> None:
     signals = walk[0].signals
     actual = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"])
     wanted = matrix(signals, [f"pelvis.reference_{axis}_m" for axis in "xyz"])
@@ -81,13 +86,13 @@ def test_pelvis_keeps_to_its_reference(walk):
     assert distance.max() < 0.03
 
 
-def test_quaternion_of_the_pelvis_stays_a_rotation(walk):
+def test_quaternion_of_the_pelvis_stays_a_rotation(walk: Any) -> None:
     wxyz = matrix(walk[0].signals, [f"pelvis.quaternion_{part}" for part in "wxyz"])
     np.testing.assert_allclose(np.linalg.norm(wxyz, axis=1), 1.0, atol=1e-2)
     assert (wxyz[:, 0] > 0.98).all()
 
 
-def test_weight_is_carried_by_ground_and_support(walk, strides):
+def test_weight_is_carried_by_ground_and_support(walk: Any, strides: Any) -> None:
     signals = walk[0].signals
     ground = matrix(signals, [f"{side}_foot.force_z_N" for side in SIDES])[strides].sum(axis=1)
     support = signals["support.force_z_N"].to_numpy()[strides]
@@ -96,7 +101,7 @@ def test_weight_is_carried_by_ground_and_support(walk, strides):
     assert ground.mean() > 0.8 * 70.0 * GRAVITY
 
 
-def test_forces_along_the_walk_cancel_over_whole_strides(walk, strides):
+def test_forces_along_the_walk_cancel_over_whole_strides(walk: Any, strides: Any) -> None:
     signals = walk[0].signals
     for axis in "xy":
         ground = matrix(signals, [f"{side}_foot.force_{axis}_N" for side in SIDES])[strides].sum(axis=1)
@@ -104,26 +109,26 @@ def test_forces_along_the_walk_cancel_over_whole_strides(walk, strides):
         assert abs(ground.mean() + support.mean()) < 0.05 * 70.0 * GRAVITY
 
 
-def share_out_of_the_friction_cone(signals, side) -> float:
+def share_out_of_the_friction_cone(signals: pa.Table, side: Any) -> float:
     force = matrix(signals, [f"{side}_foot.force_{axis}_N" for axis in "xyz"])
     assert (force[:, 2] >= -1e-9).all()
     return float((np.hypot(force[:, 0], force[:, 1]) > FRICTION * force[:, 2] + 1.0).mean())
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_friction_stays_in_its_cone(walk, side):
+def test_friction_stays_in_its_cone(walk: Any, side: Any) -> None:
     # Drake's lagged approximation bounds friction by the normal force of the step before: wrong where feet land.
     lagged = walk[0].scenario.simulation.contact_approximation == "lagged"
     assert share_out_of_the_friction_cone(walk[0].signals, side) <= (0.08 if lagged else 0.0)
 
 
-def test_friction_stays_in_its_cone_at_every_step_of_the_similar_approximation():
+def test_friction_stays_in_its_cone_at_every_step_of_the_similar_approximation() -> None:
     signals = simulate(thesis(0.7, simulation__contact_approximation="similar")).signals
     assert [share_out_of_the_friction_cone(signals, side) for side in SIDES] == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_centre_of_pressure_is_under_the_loaded_foot(walk, side):
+def test_centre_of_pressure_is_under_the_loaded_foot(walk: Any, side: Side) -> None:
     signals = walk[0].signals
     loaded = signals[f"{side}_foot.loaded"].to_numpy() > 0
     x, y = (
@@ -138,11 +143,11 @@ def test_centre_of_pressure_is_under_the_loaded_foot(walk, side):
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_inverse_kinematics_reach_every_sole(walk, side):
+def test_inverse_kinematics_reach_every_sole(walk: Any, side: Any) -> None:
     assert walk[0].signals[f"{side}_leg.ik_residual"].to_numpy().max() < 1e-4
 
 
-def test_feet_alternate_and_are_on_the_ground_about_when_they_should(walk):
+def test_feet_alternate_and_are_on_the_ground_about_when_they_should(walk: Any) -> None:
     signals = walk[0].signals
     landings = sorted((time, side) for side in ("Right", "Left") for time in events_of(signals, side).touchdown_times)
     assert [side for _, side in landings[:5]] == ["Right", "Left", "Right", "Left", "Right"]
@@ -153,24 +158,24 @@ def test_feet_alternate_and_are_on_the_ground_about_when_they_should(walk):
         assert (scheduled == loaded).mean() > 0.7
 
 
-def test_feet_lift_about_as_high_as_commanded(walk):
+def test_feet_lift_about_as_high_as_commanded(walk: Any) -> None:
     lift = walk[0].summary("thesis")["foot_lift_m"]
     assert lift["right"] == pytest.approx(0.2, abs=0.02)
     assert lift["left"] == pytest.approx(0.2, abs=0.02)
 
 
-def test_joints_follow_their_desired_angles(walk):
+def test_joints_follow_their_desired_angles(walk: Any) -> None:
     errors = walk[0].summary("thesis")["tracking_error_rad"]
     assert max(errors.values()) < 0.06
 
 
-def test_support_is_reported(walk):
+def test_support_is_reported(walk: Any) -> None:
     summary = walk[0].summary("thesis")
     assert summary["external_support"] is True
     assert summary["support_force_rms_N"] > 10.0
 
 
-def test_the_support_is_a_spring_damper_on_the_pelvis(walk):
+def test_the_support_is_a_spring_damper_on_the_pelvis(walk: Any) -> None:
     signals = walk[0].signals
     support = walk[0].scenario.controller.balance.support
     columns = [f"pelvis.{{}}{kind}{axis}_{unit}" for kind, unit in (("", "m"), ("velocity_", "m_s")) for axis in "xyz"]
@@ -180,7 +185,7 @@ def test_the_support_is_a_spring_damper_on_the_pelvis(walk):
     np.testing.assert_allclose(matrix(signals, [f"support.force_{axis}_N" for axis in "xyz"]), force, atol=1e-6)
 
 
-def test_summary_is_printed_with_the_support(walk, capsys):
+def test_summary_is_printed_with_the_support(walk: Any, capsys: pytest.CaptureFixture[str]) -> None:
     Console(width=120).print(summary_table(walk[0].summary("thesis")))
     shown = capsys.readouterr().out
     assert "EXTERNAL SUPPORT" in shown
@@ -191,11 +196,11 @@ def test_summary_is_printed_with_the_support(walk, capsys):
 
 
 @pytest.fixture(scope="module")
-def fall():
+def fall() -> Any:
     return simulate(thesis(5.0, controller__thesis__balance__support__enabled="false"))
 
 
-def test_walker_without_support_falls_and_its_record_is_kept(fall):
+def test_walker_without_support_falls_and_its_record_is_kept(fall: Any) -> None:
     time = fall.signals[TIME].to_numpy()
     assert fall.end == "fell"
     assert not fall.survived
@@ -205,7 +210,7 @@ def test_walker_without_support_falls_and_its_record_is_kept(fall):
     assert (height[:-10] > 0.6 * height[0]).all()
 
 
-def test_fall_is_summarised(fall):
+def test_fall_is_summarised(fall: Any) -> None:
     summary = fall.summary("thesis")
     assert summary["survived"] is False
     assert summary["fall_time_s"] == pytest.approx(fall.signals[TIME][-1].as_py())
@@ -213,7 +218,7 @@ def test_fall_is_summarised(fall):
     summary_table(summary)
 
 
-def test_interrupt_ends_a_run_and_keeps_its_signals():
+def test_interrupt_ends_a_run_and_keeps_its_signals() -> None:
     def interrupt(time: float) -> None:
         if time >= 0.1:
             os.kill(os.getpid(), signal.SIGINT)
@@ -226,11 +231,11 @@ def test_interrupt_ends_a_run_and_keeps_its_signals():
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch):
+def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypatch: pytest.MonkeyPatch) -> None:
     solve = InverseKinematicsSolver._solve
     plant = kinematics_plant(Subject())
 
-    def run_away(self, guess, context, discrete):
+    def run_away(self: Any, guess: Array, context: Context, discrete: Any) -> Any:
         if context.get_time() >= 0.05:
             plant.SetPositions(plant.CreateDefaultContext(), np.full(plant.num_positions(), np.nan))
         return solve(self, guess, context, discrete)
@@ -243,7 +248,7 @@ def test_state_that_drake_gives_up_on_ends_a_run_and_keeps_its_signals(monkeypat
     summary_table(outcome.summary("thesis"))
 
 
-def test_run_of_one_row_has_a_summary(capsys):
+def test_run_of_one_row_has_a_summary(capsys: pytest.CaptureFixture[str]) -> None:
     outcome = simulate(thesis(0.001))
     assert outcome.signals[TIME].to_pylist() == [0.0]
     summary = outcome.summary("thesis")
@@ -258,12 +263,12 @@ def test_run_of_one_row_has_a_summary(capsys):
     assert not any(word in shown for word in ("speed", "cost of transport", "nan", "None"))
 
 
-def test_scenario_that_cannot_be_simulated_is_refused():
+def test_scenario_that_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(ParameterError):
         simulate(thesis(1.0, gait__path__offset="0.03"))
 
 
-def test_cenic_is_what_integrates_when_asked_for():
+def test_cenic_is_what_integrates_when_asked_for() -> None:
     outcome = simulate(thesis(0.1, simulation__integrator="cenic", simulation__time_step="0"))
     assert outcome.survived
     reference = simulate(thesis(0.1))
@@ -273,7 +278,7 @@ def test_cenic_is_what_integrates_when_asked_for():
     assert np.abs(difference).max() < 0.005
 
 
-def test_a_simulation_starts_with_the_velocities_of_the_scenario():
+def test_a_simulation_starts_with_the_velocities_of_the_scenario() -> None:
     scenario = thesis(0.1, start__rate_noise="0.1")
     prepared = prepare(scenario)
     context = prepared.plant.GetMyContextFromRoot(prepared.simulator.get_context())
@@ -282,6 +287,6 @@ def test_a_simulation_starts_with_the_velocities_of_the_scenario():
     )
 
 
-def test_the_same_scenario_gives_the_same_record():
+def test_the_same_scenario_gives_the_same_record() -> None:
     first, again = (simulate(thesis(0.1, start__joint_noise="0.01")) for _ in range(2))
     assert first.signals.equals(again.signals)

@@ -1,25 +1,32 @@
 """Body observer: the soles and the center of mass of a plant state."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context
 
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.numerics import Array
 from humanwalk.systems.body_observer import BodyObserver
 
 seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
 
 @pytest.fixture(scope="module")
-def observer(plant):
+def observer(plant: MultibodyPlant) -> BodyObserver:
     return BodyObserver(plant)
 
 
 @pytest.fixture(scope="module")
-def observed(observer):
+def observed(observer: BodyObserver) -> Callable[..., Any]:
     """(soles, com) of a plant state."""
 
-    def outputs(state):
+    def outputs(state: Array) -> tuple[Array, Array]:
         context = observer.CreateDefaultContext()
         observer.GetInputPort("state").FixValue(context, state)
         return (
@@ -30,7 +37,7 @@ def observed(observer):
     return outputs
 
 
-def random_state(plant, rng):
+def random_state(plant: MultibodyPlant, rng: np.random.Generator) -> tuple[Array, Array]:
     q = plant.GetPositions(plant.CreateDefaultContext())
     q[:4] = rng.normal(size=4)
     q[:4] /= np.linalg.norm(q[:4])
@@ -38,7 +45,7 @@ def random_state(plant, rng):
     return q, rng.normal(size=plant.num_velocities())
 
 
-def test_ports(observer, plant):
+def test_ports(observer: BodyObserver, plant: MultibodyPlant) -> None:
     assert observer.num_input_ports() == 1
     assert observer.GetInputPort("state").get_name() == "state"
     assert observer.GetInputPort("state").size() == plant.num_multibody_states()
@@ -46,7 +53,9 @@ def test_ports(observer, plant):
         assert (port.get_name(), port.size()) == (name, 6)
 
 
-def test_neutral_standing_agrees_with_the_skeleton(observed, plant, skeleton):
+def test_neutral_standing_agrees_with_the_skeleton(
+    observed: Callable[..., Any], plant: MultibodyPlant, skeleton: Skeleton
+) -> None:
     soles, com = observed(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
     width = skeleton.hip_half_width
     np.testing.assert_allclose(soles, [0, -width, 0, 0, width, 0], atol=1e-9)
@@ -56,7 +65,9 @@ def test_neutral_standing_agrees_with_the_skeleton(observed, plant, skeleton):
 
 @settings(max_examples=25)
 @given(rng=seeds)
-def test_com_velocity_is_the_rate_of_its_position(observed, plant, rng):
+def test_com_velocity_is_the_rate_of_its_position(
+    observed: Callable[..., Any], plant: MultibodyPlant, rng: np.random.Generator
+) -> None:
     q, v = random_state(plant, rng)
     h = 1e-6
     q_rate = plant.MapVelocityToQDot(_at(plant, q), v)
@@ -64,7 +75,7 @@ def test_com_velocity_is_the_rate_of_its_position(observed, plant, rng):
     np.testing.assert_allclose(observed(np.concatenate((q, v)))[1][3:], (ahead - behind) / (2 * h), atol=1e-6)
 
 
-def _at(plant, q):
+def _at(plant: MultibodyPlant, q: Array) -> Context:
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, q)
     return context
@@ -72,7 +83,9 @@ def _at(plant, q):
 
 @given(rng=seeds, shift=st.tuples(*[st.floats(-5, 5)] * 3))
 @settings(max_examples=25)
-def test_a_translation_of_the_body_translates_its_points(observed, plant, rng, shift):
+def test_a_translation_of_the_body_translates_its_points(
+    observed: Callable[..., Any], plant: MultibodyPlant, rng: np.random.Generator, shift: tuple[float, float, float]
+) -> None:
     q, v = random_state(plant, rng)
     moved = q.copy()
     moved[4:7] += shift
@@ -82,7 +95,7 @@ def test_a_translation_of_the_body_translates_its_points(observed, plant, rng, s
     np.testing.assert_allclose(com_there, com + np.concatenate((shift, np.zeros(3))), atol=1e-9)
 
 
-def test_each_port_has_a_signal_with_a_column_per_element(observer):
+def test_each_port_has_a_signal_with_a_column_per_element(observer: BodyObserver) -> None:
     assert [signal.name for signal in observer.signals] == ["soles", "com"]
     assert all(len(signal.columns) == signal.port.size() for signal in observer.signals)
     assert observer.signals[0].columns[3] == "left_sole.x_m"

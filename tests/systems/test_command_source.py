@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.command_source import CommandSource
 from humanwalk.walking.command import CommandParameters, CommandPoint, CommandProfile
@@ -13,14 +14,14 @@ from humanwalk.walking.command import CommandParameters, CommandPoint, CommandPr
 WALK = CommandParameters(points=(CommandPoint(1.0, forward=1.0), CommandPoint(6.0, sideways=0.2, turn=0.5)))
 
 
-def command_at(time, parameters=WALK):
+def command_at(time: float, parameters: CommandParameters = WALK) -> Array:
     source = CommandSource(parameters)
     context = source.CreateDefaultContext()
     context.SetTime(time)
     return source.GetOutputPort("command").Eval(context)
 
 
-def test_port_and_signal():
+def test_port_and_signal() -> None:
     (signal,) = CommandSource(WALK).signals
     assert (signal.name, signal.port.get_name(), signal.port.size()) == ("command", "command", 3)
     assert signal.columns == ("command.forward_m_s", "command.sideways_m_s", "command.turn_rad_s")
@@ -37,7 +38,7 @@ def test_port_and_signal():
         (20.0, (0, 0.2, 0.5)),
     ],
 )
-def test_speeds_ramp_to_each_point(time, expected):
+def test_speeds_ramp_to_each_point(time: float, expected: tuple[float, ...]) -> None:
     assert command_at(time) == pytest.approx(expected)
 
 
@@ -53,7 +54,7 @@ profiles = st.lists(st.tuples(st.floats(0.1, 5.0), speeds), max_size=4).map(
 
 
 @given(profiles, st.floats(0.0, 25.0), st.floats(1e-3, 0.5))
-def test_speeds_change_no_faster_than_allowed(parameters, time, dt):
+def test_speeds_change_no_faster_than_allowed(parameters: CommandParameters, time: float, dt: float) -> None:
     profile = CommandProfile(parameters)
     before, after = profile.at(time), profile.at(time + dt)
     assert abs(after.forward - before.forward) <= parameters.acceleration * dt + 1e-9
@@ -62,22 +63,22 @@ def test_speeds_change_no_faster_than_allowed(parameters, time, dt):
 
 
 @given(profiles)
-def test_in_the_end_the_last_target_is_reached(parameters):
+def test_in_the_end_the_last_target_is_reached(parameters: CommandParameters) -> None:
     last = (parameters.points or (CommandPoint(),))[-1]
     end = CommandProfile(parameters).at(1000.0)
     assert (end.forward, end.sideways, end.turn) == pytest.approx((last.forward, last.sideways, last.turn))
 
 
-def test_a_point_may_interrupt_the_ramp_of_the_point_before():
+def test_a_point_may_interrupt_the_ramp_of_the_point_before() -> None:
     parameters = CommandParameters(points=(CommandPoint(0.0, forward=1.0), CommandPoint(1.0)))
     assert command_at(1.0, parameters)[0] == pytest.approx(0.4)
     assert command_at(1.5, parameters)[0] == pytest.approx(0.2)
 
 
-def test_without_points_the_command_is_zero():
+def test_without_points_the_command_is_zero() -> None:
     assert command_at(5.0, CommandParameters(points=())) == pytest.approx([0, 0, 0])
 
 
-def test_unsorted_points_are_an_error():
+def test_unsorted_points_are_an_error() -> None:
     with pytest.raises(ParameterError, match=r"points: time 1 comes after 2"):
         CommandParameters(points=(CommandPoint(2.0), CommandPoint(1.0)))

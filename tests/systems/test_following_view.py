@@ -1,10 +1,11 @@
 """FollowingView alone: where Meshcat's scene and the force arrows are."""
 
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
-from pydrake.geometry import SceneGraph
+from pydrake.geometry import Meshcat, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
 from pydrake.systems.analysis import Simulator
@@ -12,6 +13,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.limbs import PELVIS
 from humanwalk.body.plant import Subject, add_human
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.following_view import ARROW_LENGTH_PER_FORCE, SCENE, FollowingView
 from humanwalk.terrain import Plane
@@ -23,20 +25,20 @@ LEFT_IN_THE_AIR = [0.0] * 8
 
 
 @pytest.fixture(scope="module")
-def meshcat():
+def meshcat() -> Meshcat:
     return make_meshcat()
 
 
-def doubles(packed, count):
+def doubles(packed: bytes, count: int) -> Array:
     """The last numbers of a msgpack message, each a tag and eight bytes."""
     return np.array([struct.unpack(">d", packed[len(packed) - 9 * i + 1 :][:8])[0] for i in range(count, 0, -1)])
 
 
-def transform(meshcat, path):
+def transform(meshcat: Any, path: Any) -> RigidTransform:
     return RigidTransform(doubles(meshcat._GetPackedTransform(path), 16).reshape(4, 4).T)
 
 
-def show(meshcat, terrain, forces=None):
+def show(meshcat: Meshcat, terrain: Plane, forces: list[float] | None = None) -> None:
     """Publish the human standing at P_WP once."""
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
@@ -52,7 +54,7 @@ def show(meshcat, terrain, forces=None):
     Simulator(diagram, context).Initialize()
 
 
-def test_ports(meshcat):
+def test_ports(meshcat: Meshcat) -> None:
     view = FollowingView(meshcat, 32.0, Plane())
     assert [view.get_input_port(i).get_name() for i in range(2)] == ["query_object", "foot_forces"]
     assert view.GetInputPort("foot_forces").size() == 16
@@ -60,13 +62,13 @@ def test_ports(meshcat):
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.2])
-def test_scene_moves_back_along_x_and_down_with_the_ground(meshcat, slope):
+def test_scene_moves_back_along_x_and_down_with_the_ground(meshcat: Meshcat, slope: float) -> None:
     show(meshcat, Plane(slope=slope))
     expected = [-P_WP[0], 0.0, -P_WP[0] * np.tan(slope)]
     np.testing.assert_allclose(transform(meshcat, SCENE).translation(), expected, atol=1e-12)
 
 
-def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshcat):
+def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshcat: Any) -> None:
     show(meshcat, Plane(), RIGHT + LEFT_IN_THE_AIR)
     force = np.array(RIGHT[:3])
     X_WA = transform(meshcat, f"{SCENE}/foot_force/Right")
@@ -79,14 +81,14 @@ def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshc
     np.testing.assert_allclose(scale, [1.0, 1.0, length])
 
 
-def test_arrow_of_an_unloaded_foot_is_invisible(meshcat):
+def test_arrow_of_an_unloaded_foot_is_invisible(meshcat: Any) -> None:
     show(meshcat, Plane(), RIGHT + LEFT_IN_THE_AIR)
     visible = {side: meshcat._GetPackedProperty(f"{SCENE}/foot_force/{side}", "visible") for side in ("Right", "Left")}
     # Msgpack's true and false.
     assert {side: packed[-1] for side, packed in visible.items()} == {"Right": 0xC3, "Left": 0xC2}
 
 
-def test_scene_without_a_human_is_refused(meshcat):
+def test_scene_without_a_human_is_refused(meshcat: Meshcat) -> None:
     builder = DiagramBuilder()
     scene_graph = builder.AddSystem(SceneGraph())
     view = builder.AddSystem(FollowingView(meshcat, 32.0, Plane()))

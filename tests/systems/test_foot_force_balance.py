@@ -5,6 +5,7 @@ import pytest
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.control.balance_levels import FootForceBalanceParameters
+from humanwalk.numerics import Array
 from humanwalk.systems.foot_force_balance import FootForceBalance
 
 WEIGHT = 686.0
@@ -14,11 +15,13 @@ TARGETS = np.arange(26.0)
 
 
 @pytest.fixture
-def level():
+def level() -> FootForceBalance:
     return FootForceBalance(WEIGHT, PARAMETERS, PERIOD)
 
 
-def simulator_of(level, schedule=(1, 1), vertical=(WEIGHT / 2, WEIGHT / 2)):
+def simulator_of(
+    level: FootForceBalance, schedule: tuple[int, int] = (1, 1), vertical: tuple[float, ...] = (WEIGHT / 2, WEIGHT / 2)
+) -> Simulator:
     context = level.CreateDefaultContext()
     level.GetInputPort("sole_targets").FixValue(context, TARGETS)
     level.GetInputPort("contact_schedule").FixValue(context, np.array(schedule, dtype=float))
@@ -30,11 +33,11 @@ def simulator_of(level, schedule=(1, 1), vertical=(WEIGHT / 2, WEIGHT / 2)):
     return Simulator(level, context)
 
 
-def shift_and_rate(level, simulator):
+def shift_and_rate(level: FootForceBalance, simulator: Simulator) -> list[Array]:
     return np.split(level.GetOutputPort("shift").Eval(simulator.get_context()), 2)
 
 
-def test_ports(level):
+def test_ports(level: FootForceBalance) -> None:
     names = {level.get_input_port(i).get_name() for i in range(level.num_input_ports())}
     assert names == {"sole_targets", "contact_schedule", "foot_forces"}
     assert level.GetInputPort("sole_targets").size() == 26
@@ -49,7 +52,9 @@ def test_ports(level):
 @pytest.mark.parametrize(
     ("schedule", "vertical"), [((1, 1), (WEIGHT / 2, WEIGHT / 2)), ((1, 0), (WEIGHT, 0)), ((0, 0), (0, 0))]
 )
-def test_with_the_desired_forces_the_targets_do_not_change(level, schedule, vertical):
+def test_with_the_desired_forces_the_targets_do_not_change(
+    level: FootForceBalance, schedule: tuple[int, int], vertical: tuple[float, ...]
+) -> None:
     simulator = simulator_of(level, schedule, vertical)
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
@@ -57,7 +62,7 @@ def test_with_the_desired_forces_the_targets_do_not_change(level, schedule, vert
     np.testing.assert_allclose(level.GetOutputPort("shifted_targets").Eval(context), TARGETS, atol=1e-12)
 
 
-def test_the_target_of_an_unloaded_foot_moves_down_and_the_other_up(level):
+def test_the_target_of_an_unloaded_foot_moves_down_and_the_other_up(level: FootForceBalance) -> None:
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     simulator.AdvanceTo(0.1)
     shift, _ = shift_and_rate(level, simulator)
@@ -66,7 +71,7 @@ def test_the_target_of_an_unloaded_foot_moves_down_and_the_other_up(level):
     np.testing.assert_allclose(shift.reshape(2, 3)[:, :2], 0.0, atol=1e-12)
 
 
-def test_shift_and_rate_are_added_to_the_targets(level):
+def test_shift_and_rate_are_added_to_the_targets(level: FootForceBalance) -> None:
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()
@@ -78,7 +83,7 @@ def test_shift_and_rate_are_added_to_the_targets(level):
     )
 
 
-def test_the_shift_changes_at_its_rate_until_the_next_update(level):
+def test_the_shift_changes_at_its_rate_until_the_next_update(level: FootForceBalance) -> None:
     simulator = simulator_of(level, vertical=(0.0, WEIGHT))
     for k in range(5):
         simulator.AdvanceTo((k + 0.5) * PERIOD)
@@ -88,7 +93,7 @@ def test_the_shift_changes_at_its_rate_until_the_next_update(level):
         np.testing.assert_allclose(shift_and_rate(level, simulator)[0], shift + PERIOD * rate, atol=1e-15)
 
 
-def test_the_shift_stays_within_its_bound(level):
+def test_the_shift_stays_within_its_bound(level: FootForceBalance) -> None:
     simulator = simulator_of(level, vertical=(0.0, 100 * WEIGHT))
     simulator.AdvanceTo(2.0)
     shift, rate = shift_and_rate(level, simulator)
@@ -97,7 +102,7 @@ def test_the_shift_stays_within_its_bound(level):
     np.testing.assert_allclose(rate, 0.0, atol=1e-6)
 
 
-def test_the_shift_does_not_depend_on_the_period():
+def test_the_shift_does_not_depend_on_the_period() -> None:
     shifts = []
     for period in (PERIOD, PERIOD / 8):
         level = FootForceBalance(WEIGHT, PARAMETERS, period)

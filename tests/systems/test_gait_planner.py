@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Context
 
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
@@ -13,11 +15,11 @@ PERIOD = 0.004
 
 
 @pytest.fixture
-def planner(plant):
+def planner(plant: MultibodyPlant) -> GaitPlanner:
     return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, Plane())
 
 
-def simulator_of(planner, plant, command):
+def simulator_of(planner: GaitPlanner, plant: MultibodyPlant, command: tuple[float, ...]) -> Simulator:
     simulator = Simulator(planner)
     context = simulator.get_mutable_context()
     planner.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
@@ -27,7 +29,7 @@ def simulator_of(planner, plant, command):
     return simulator
 
 
-def test_ports(planner, plant):
+def test_ports(planner: GaitPlanner, plant: MultibodyPlant) -> None:
     inputs = [planner.get_input_port(i) for i in range(planner.num_input_ports())]
     assert [(port.get_name(), port.size()) for port in inputs] == [
         ("state", plant.num_multibody_states()),
@@ -39,20 +41,20 @@ def test_ports(planner, plant):
     assert [port.size() for port in outputs[1:]] == [2, 2, 9]
 
 
-def test_signals_have_a_column_per_element_and_the_names_of_their_ports(planner):
+def test_signals_have_a_column_per_element_and_the_names_of_their_ports(planner: GaitPlanner) -> None:
     assert [signal.name for signal in planner.signals] == ["phase", "contact_schedule", "balance"]
     for signal in planner.signals:
         assert signal.port.get_name() == signal.name
         assert len(set(signal.columns)) == signal.port.size()
 
 
-def test_before_initialization_both_feet_stand(planner):
+def test_before_initialization_both_feet_stand(planner: GaitPlanner) -> None:
     context = planner.CreateDefaultContext()
     assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([1, 1])
     assert planner.GetOutputPort("balance").Eval(context) == pytest.approx(np.zeros(9))
 
 
-def test_it_stands_while_nothing_is_commanded(planner, plant):
+def test_it_stands_while_nothing_is_commanded(planner: GaitPlanner, plant: MultibodyPlant) -> None:
     simulator = simulator_of(planner, plant, (0, 0, 0))
     simulator.AdvanceTo(0.5)
     plan = planner.GetOutputPort("plan").Eval(simulator.get_context())
@@ -60,7 +62,9 @@ def test_it_stands_while_nothing_is_commanded(planner, plant):
     assert planner.GetOutputPort("phase").Eval(simulator.get_context()) == pytest.approx([0, 0])
 
 
-def test_a_command_makes_it_shift_the_weight_and_lift_the_first_foot(planner, plant):
+def test_a_command_makes_it_shift_the_weight_and_lift_the_first_foot(
+    planner: GaitPlanner, plant: MultibodyPlant
+) -> None:
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     simulator.AdvanceTo(0.5)
     assert planner.GetOutputPort("plan").Eval(simulator.get_context()).phase is Phase.WEIGHT_SHIFT
@@ -70,11 +74,11 @@ def test_a_command_makes_it_shift_the_weight_and_lift_the_first_foot(planner, pl
     assert planner.GetOutputPort("contact_schedule").Eval(context) == pytest.approx([0, 1])
 
 
-def test_the_gait_cycles_of_the_feet_are_half_a_cycle_apart(planner, plant):
+def test_the_gait_cycles_of_the_feet_are_half_a_cycle_apart(planner: GaitPlanner, plant: MultibodyPlant) -> None:
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     seen = []
 
-    def record(context):
+    def record(context: Context) -> None:
         right, left = planner.GetOutputPort("phase").Eval(context)
         if planner.GetOutputPort("plan").Eval(context).phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
             seen.append((right, left))
@@ -88,7 +92,7 @@ def test_the_gait_cycles_of_the_feet_are_half_a_cycle_apart(planner, plant):
         assert max(right, left) <= 1.0
 
 
-def test_evaluating_outputs_does_not_plan(planner, plant):
+def test_evaluating_outputs_does_not_plan(planner: GaitPlanner, plant: MultibodyPlant) -> None:
     simulator = simulator_of(planner, plant, (0.3, 0, 0))
     simulator.AdvanceTo(0.1)
     context = simulator.get_context()

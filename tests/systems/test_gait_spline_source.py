@@ -1,5 +1,8 @@
 """Gait spline source: poses in the pelvis frame, their exact rates, and stance feet at rest in the world."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,7 +11,10 @@ from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RigidTransform
 from pydrake.multibody.math import SpatialVelocity
 
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import pose_error
+from humanwalk.gait.walking_gait import WalkingGait
+from humanwalk.numerics import Array
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 
 SIDES = ("Right", "Left")
@@ -17,16 +23,16 @@ times = st.floats(0.0, 6.0)
 
 
 @pytest.fixture(scope="module")
-def source(gait, skeleton):
+def source(gait: WalkingGait, skeleton: Skeleton) -> GaitSplineSource:
     return GaitSplineSource(gait, skeleton)
 
 
 @pytest.fixture(scope="module")
-def at(source):
+def at(source: GaitSplineSource) -> Callable[..., Any]:
     """Every output by name at a time [s], and poses and velocities of pelvis_reference and sole_targets."""
     context = source.CreateDefaultContext()
 
-    def outputs(t):
+    def outputs(t: float) -> dict[str, Array | RigidTransform | SpatialVelocity]:
         context.SetTime(t)
         found = {
             source.get_output_port(i).get_name(): source.get_output_port(i).Eval(context)
@@ -41,7 +47,7 @@ def at(source):
     return outputs
 
 
-def test_ports(source):
+def test_ports(source: GaitSplineSource) -> None:
     assert source.num_input_ports() == 0
     names = {source.get_output_port(i).get_name() for i in range(source.num_output_ports())}
     assert names == {"sole_targets", "pelvis_reference", "phase", "contact_schedule"}
@@ -57,7 +63,9 @@ def test_ports(source):
 @pytest.mark.parametrize(("pose", "velocity"), [("X_PRs", "V_PRs"), ("X_PLs", "V_PLs"), ("X_WP", "V_WP")])
 @settings(max_examples=200)
 @given(t=times)
-def test_velocities_are_the_rates_of_the_poses(at, gait, pose, velocity, t):
+def test_velocities_are_the_rates_of_the_poses(
+    at: Callable[..., Any], gait: WalkingGait, pose: str, velocity: str, t: float
+) -> None:
     behind, ahead = max(t - STEP, 0.0), t + STEP
     quotient = pose_error(at(ahead)[pose], at(behind)[pose]) / (ahead - behind)
     # Accelerations stay below 500 in SI units, one of them may begin within the difference.
@@ -65,7 +73,7 @@ def test_velocities_are_the_rates_of_the_poses(at, gait, pose, velocity, t):
 
 
 @pytest.mark.parametrize("t", [0.0, 0.364999, 0.365, 0.365001])
-def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at, t):
+def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at: Callable[..., Any], t: float) -> None:
     for name in ("V_PRs", "V_PLs", "V_WP"):
         before, after = (at(max(t + e, 0.0))[name].get_coeffs() for e in (-STEP, STEP))
         np.testing.assert_allclose(before, after, atol=1000 * STEP)
@@ -73,7 +81,9 @@ def test_velocities_do_not_jump_where_the_speed_ramp_begins_and_ends(at, t):
 
 @settings(max_examples=200)
 @given(t=times)
-def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, footsteps, gait, t):
+def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(
+    at: Callable[..., Any], footsteps: Callable[..., Any], gait: WalkingGait, t: float
+) -> None:
     here = at(t)
     for i, side in enumerate(SIDES):
         X_WS = here["X_WP"] @ here[f"X_P{side[0]}s"]
@@ -89,7 +99,7 @@ def test_a_sole_in_stance_is_at_rest_and_level_in_the_world(at, footsteps, gait,
 
 
 @given(t=times)
-def test_stance_is_the_first_part_of_the_phase(at, gait, t):
+def test_stance_is_the_first_part_of_the_phase(at: Callable[..., Any], gait: WalkingGait, t: float) -> None:
     here = at(t)
     for i, side in enumerate(SIDES):
         assert 0.0 <= here["phase"][i] < 1.0
@@ -99,7 +109,7 @@ def test_stance_is_the_first_part_of_the_phase(at, gait, t):
 
 
 @given(t=times)
-def test_feet_are_half_a_cycle_apart_and_one_is_always_down(at, t):
+def test_feet_are_half_a_cycle_apart_and_one_is_always_down(at: Callable[..., Any], t: float) -> None:
     here = at(t)
     right, left = here["phase"]
     assert (right - left) % 1.0 == pytest.approx(0.5, abs=1e-9)
@@ -107,7 +117,7 @@ def test_feet_are_half_a_cycle_apart_and_one_is_always_down(at, t):
     assert set(here["contact_schedule"]) <= {0.0, 1.0}
 
 
-def test_it_starts_standing_on_both_feet(at, skeleton):
+def test_it_starts_standing_on_both_feet(at: Callable[..., Any], skeleton: Skeleton) -> None:
     start = at(0.0)
     np.testing.assert_array_equal(start["contact_schedule"], [1, 1])
     np.testing.assert_allclose(start["X_WP"].translation(), [0, 0, skeleton.hip_height], atol=1e-12)
@@ -115,17 +125,19 @@ def test_it_starts_standing_on_both_feet(at, skeleton):
         np.testing.assert_allclose(start[name].get_coeffs(), 0.0, atol=1e-12)
 
 
-def test_pelvis_walks_upright_along_x(at, gait):
+def test_pelvis_walks_upright_along_x(at: Callable[..., Any], gait: WalkingGait) -> None:
     steady = at(4.0)
     np.testing.assert_allclose(steady["V_WP"].get_coeffs(), [0, 0, 0, gait.ramp.speed, 0, 0], atol=1e-12)
     np.testing.assert_allclose(steady["X_WP"].rotation().matrix(), np.eye(3), atol=1e-12)
 
 
 @given(t=times, preview=st.floats(0.0, 0.05))
-def test_the_preview_applies_to_the_soles_only(source, gait, skeleton, preview, t):
+def test_the_preview_applies_to_the_soles_only(
+    source: GaitSplineSource, gait: WalkingGait, skeleton: Skeleton, preview: float, t: float
+) -> None:
     ahead = GaitSplineSource(gait, skeleton, preview)
 
-    def value(system, name, time):
+    def value(system: GaitSplineSource, name: str, time: float) -> Array:
         context = system.CreateDefaultContext()
         context.SetTime(time)
         return system.GetOutputPort(name).Eval(context)
@@ -135,13 +147,15 @@ def test_the_preview_applies_to_the_soles_only(source, gait, skeleton, preview, 
 
 
 @given(t=times)
-def test_the_pelvis_sinks_by_the_offset_until_the_first_touchdown(at, gait, skeleton, t):
+def test_the_pelvis_sinks_by_the_offset_until_the_first_touchdown(
+    at: Callable[..., Any], gait: WalkingGait, skeleton: Skeleton, t: float
+) -> None:
     height = skeleton.hip_height - at(t)["X_WP"].translation()[2]
     assert -1e-12 <= height <= gait.parameters.offset + 1e-12
     if t >= gait.start_time:
         assert height == pytest.approx(gait.parameters.offset, abs=1e-12)
 
 
-def test_every_port_but_the_soles_has_a_signal_with_a_column_per_element(source):
+def test_every_port_but_the_soles_has_a_signal_with_a_column_per_element(source: GaitSplineSource) -> None:
     assert [signal.name for signal in source.signals] == ["phase", "contact_schedule", "pelvis_reference"]
     assert all(len(signal.columns) == signal.port.size() for signal in source.signals)

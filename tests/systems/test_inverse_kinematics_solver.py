@@ -1,20 +1,30 @@
 """Inverse kinematics system: solved once a period, outputs are state, the status tells what was reached."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import Context, DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
 
 from humanwalk.body import SIDES
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import (
     ROW_WEIGHTS,
     SINGULAR_VALUE_FLOOR,
     InverseKinematicsParameters,
+    InverseKinematicsSolution,
+    LegKinematics,
     pose_error,
 )
+from humanwalk.gait.walking_gait import WalkingGait
+from humanwalk.numerics import Array
+from humanwalk.sides import Side
 from humanwalk.systems import inverse_kinematics_solver as module
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
@@ -26,38 +36,38 @@ V = np.array([0.0, 0.2, 0.0, 0.3, 0.0, 0.5])
 
 
 @pytest.fixture
-def solver(plant):
+def solver(plant: MultibodyPlant) -> InverseKinematicsSolver:
     return InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD)
 
 
 @pytest.fixture
-def places(joints):
+def places(joints: JointMap) -> dict[Side, list[int]]:
     return {side: [joints.names.index(name) for name in LEGS[side].chain] for side in SIDES}
 
 
-def sole_target(X_PS, V_PS=V):
+def sole_target(X_PS: RigidTransform, V_PS: Array = V) -> Array:
     return np.concatenate((X_PS.rotation().ToQuaternion().wxyz(), X_PS.translation(), V_PS))
 
 
-def fixed_context(solver, legs):
+def fixed_context(solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics]) -> Context:
     context = solver.CreateDefaultContext()
     targets = [sole_target(legs[side].X_PS(THETA)) for side in SIDES]
     solver.GetInputPort("sole_targets").FixValue(context, np.concatenate(targets))
     return context
 
 
-def initialized(solver, context):
+def initialized(solver: InverseKinematicsSolver, context: Context) -> Simulator:
     simulator = Simulator(solver, context)
     simulator.Initialize()
     return simulator
 
 
 @pytest.fixture
-def count_solutions(monkeypatch):
+def count_solutions(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     times = []
-    solve = module.solve_inverse_kinematics
+    solve = module.solve_inverse_kinematics  # type: ignore[attr-defined]
 
-    def counted(*arguments):
+    def counted(*arguments: Any) -> InverseKinematicsSolution:
         times.append(len(times))
         return solve(*arguments)
 
@@ -65,7 +75,7 @@ def count_solutions(monkeypatch):
     return times
 
 
-def test_ports(solver):
+def test_ports(solver: InverseKinematicsSolver) -> None:
     inputs = [solver.get_input_port(i).get_name() for i in range(solver.num_input_ports())]
     assert sorted(inputs) == ["posture", "sole_targets"]
     assert solver.GetInputPort("sole_targets").size() == 26
@@ -78,7 +88,9 @@ def test_ports(solver):
         assert (port.get_name(), port.size()) == (name, size)
 
 
-def test_initialization_solves_for_time_zero(solver, legs, places):
+def test_initialization_solves_for_time_zero(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], places: dict[Side, list[int]]
+) -> None:
     context = fixed_context(solver, legs)
     initialized(solver, context)
     q, _ = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
@@ -88,7 +100,9 @@ def test_initialization_solves_for_time_zero(solver, legs, places):
     assert solver.GetOutputPort("sample_time").Eval(context)[0] == 0.0
 
 
-def test_rates_give_the_desired_velocity_of_the_soles(solver, legs, places):
+def test_rates_give_the_desired_velocity_of_the_soles(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], places: dict[Side, list[int]]
+) -> None:
     context = fixed_context(solver, legs)
     initialized(solver, context)
     q, v = np.split(solver.GetOutputPort("desired_state").Eval(context), 2)
@@ -97,7 +111,9 @@ def test_rates_give_the_desired_velocity_of_the_soles(solver, legs, places):
         np.testing.assert_allclose(J @ v[places[side]], V, atol=1e-9)
 
 
-def test_reading_outputs_solves_nothing(solver, legs, count_solutions):
+def test_reading_outputs_solves_nothing(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], count_solutions: list[Any]
+) -> None:
     context = fixed_context(solver, legs)
     for port in range(solver.num_output_ports()):
         solver.get_output_port(port).Eval(context)
@@ -105,7 +121,9 @@ def test_reading_outputs_solves_nothing(solver, legs, count_solutions):
     assert not solver.HasAnyDirectFeedthrough()
 
 
-def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
+def test_it_solves_both_legs_once_a_period(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], count_solutions: list[Any]
+) -> None:
     simulator = initialized(solver, fixed_context(solver, legs))
     at_start = len(count_solutions)
     sample_time = solver.GetOutputPort("sample_time")
@@ -115,7 +133,7 @@ def test_it_solves_both_legs_once_a_period(solver, legs, count_solutions):
     assert len(count_solutions) - at_start == 2 * 4
 
 
-def test_between_updates_nothing_changes(solver, legs):
+def test_between_updates_nothing_changes(solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics]) -> None:
     simulator = initialized(solver, fixed_context(solver, legs))
     simulator.AdvanceTo(1.2 * PERIOD)
     before = solver.GetOutputPort("desired_state").Eval(simulator.get_context())
@@ -123,7 +141,7 @@ def test_between_updates_nothing_changes(solver, legs):
     np.testing.assert_array_equal(solver.GetOutputPort("desired_state").Eval(simulator.get_context()), before)
 
 
-def test_status_of_a_reached_pose(solver, legs):
+def test_status_of_a_reached_pose(solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics]) -> None:
     context = fixed_context(solver, legs)
     initialized(solver, context)
     status = solver.GetOutputPort("status").Eval(context)
@@ -132,7 +150,9 @@ def test_status_of_a_reached_pose(solver, legs):
     np.testing.assert_array_equal(status[4:], [1, 1])
 
 
-def test_a_pose_out_of_reach_is_reported_for_its_leg_only(solver, legs, places):
+def test_a_pose_out_of_reach_is_reported_for_its_leg_only(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], places: dict[Side, list[int]]
+) -> None:
     context = fixed_context(solver, legs)
     far = RigidTransform(legs["Left"].X_PS(np.zeros(7)).translation() - [0.0, 0.0, 0.1])
     targets = np.concatenate((sole_target(legs["Right"].X_PS(THETA)), sole_target(far)))
@@ -148,7 +168,9 @@ def test_a_pose_out_of_reach_is_reported_for_its_leg_only(solver, legs, places):
     assert np.linalg.norm(error) == pytest.approx(status[1], abs=1e-9)
 
 
-def test_posture_passes_except_for_the_legs(solver, legs, places):
+def test_posture_passes_except_for_the_legs(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], places: dict[Side, list[int]]
+) -> None:
     posture = np.arange(2.0 * N) / 100
     context = fixed_context(solver, legs)
     initialized(solver, context)
@@ -164,7 +186,7 @@ def test_posture_passes_except_for_the_legs(solver, legs, places):
         np.testing.assert_array_equal(alone[half][~in_legs], 0.0)
 
 
-def test_before_the_first_solution_is_the_start_posture(plant, joints):
+def test_before_the_first_solution_is_the_start_posture(plant: MultibodyPlant, joints: JointMap) -> None:
     solver = InverseKinematicsSolver(
         plant, InverseKinematicsParameters(), PERIOD, start_posture={LEGS["Right"].knee: 0.7}
     )
@@ -176,7 +198,7 @@ def test_before_the_first_solution_is_the_start_posture(plant, joints):
         assert not v.any()
 
 
-def test_it_keeps_the_previous_sample(plant, legs):
+def test_it_keeps_the_previous_sample(plant: MultibodyPlant, legs: dict[Side, LegKinematics]) -> None:
     """With a preview of one period the present lies between the previous sample and the next."""
     solver = InverseKinematicsSolver(plant, InverseKinematicsParameters(), PERIOD, preview=PERIOD)
     simulator = initialized(solver, fixed_context(solver, legs))
@@ -191,7 +213,7 @@ def test_it_keeps_the_previous_sample(plant, legs):
         last = solver.GetOutputPort("desired_state").Eval(context).copy()
 
 
-def walk(plant, gait, skeleton, period, until):
+def walk(plant: MultibodyPlant, gait: WalkingGait, skeleton: Skeleton, period: float, until: float) -> Any:
     """Times, desired angles, desired rates and status of every solution on the thesis' walk."""
     builder = DiagramBuilder()
     source = builder.AddSystem(GaitSplineSource(gait, skeleton))
@@ -211,28 +233,33 @@ def walk(plant, gait, skeleton, period, until):
 
 
 @pytest.fixture(scope="module")
-def walked(plant, gait, skeleton):
+def walked(plant: MultibodyPlant, gait: WalkingGait, skeleton: Skeleton) -> tuple[Array, Array, Array, Array]:
     return walk(plant, gait, skeleton, 0.002, 1.6)
 
 
-def test_the_thesis_walk_is_within_reach(walked):
+def test_the_thesis_walk_is_within_reach(walked: tuple[Array, Array, Array, Array]) -> None:
     times, _, _, status = walked
     # The straight leg of the first 0.1 s falls short by hundredths of a millimeter: the pelvis has hardly dropped yet.
     assert status[:, :2].max() < 5e-5
     np.testing.assert_array_equal(status[times > 0.1, 4:], 1.0)
 
 
-def test_angles_of_the_walk_stay_in_their_ranges(walked, joints):
+def test_angles_of_the_walk_stay_in_their_ranges(walked: tuple[Array, Array, Array, Array], joints: JointMap) -> None:
     _, q, _, _ = walked
     assert np.all((joints.lower <= q) & (q <= joints.upper))
 
 
-def smallest_singular_value(leg, theta):
+def smallest_singular_value(leg: LegKinematics, theta: Array) -> float:
     return np.linalg.svd(ROW_WEIGHTS[:, None] * leg.jacobian(theta))[1][-1]
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_rates_of_the_walk_are_the_differences_of_its_angles(walked, legs, places, side):
+def test_rates_of_the_walk_are_the_differences_of_its_angles(
+    walked: tuple[Array, Array, Array, Array],
+    legs: dict[Side, LegKinematics],
+    places: dict[Side, list[int]],
+    side: Side,
+) -> None:
     """Wherever the leg is not so straight that the floor of the singular values slows the rates."""
     times, q, v = walked[0], walked[1][:, places[side]], walked[2][:, places[side]]
     h = times[1] - times[0]
@@ -250,7 +277,9 @@ def test_rates_of_the_walk_are_the_differences_of_its_angles(walked, legs, place
     assert np.median(bound[regular]) < 0.01 * np.abs(v).max()
 
 
-def test_a_straight_walk_never_turns_the_legs_sideways(walked, joints):
+def test_a_straight_walk_never_turns_the_legs_sideways(
+    walked: tuple[Array, Array, Array, Array], joints: JointMap
+) -> None:
     _, q, _, _ = walked
     sideways = [
         joints.names.index(name)

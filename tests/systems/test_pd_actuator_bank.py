@@ -1,20 +1,23 @@
 """PD actuator bank: one law for 42 joints, interpolated between samples, unstable steps rejected."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
-from pydrake.multibody.tree import JointActuatorIndex, RevoluteJoint, SpatialInertia, UnitInertia
+from pydrake.multibody.tree import JointActuatorIndex, ModelInstanceIndex, RevoluteJoint, SpatialInertia, UnitInertia
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import Context, DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.hermite import hermite
 from humanwalk.control.joint_gains import JointGains, joint_gains
-from humanwalk.control.pd_control import install_gains, pd_torque
+from humanwalk.control.pd_control import PdLaw, install_gains, pd_torque
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
@@ -23,11 +26,13 @@ seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
 
 @pytest.fixture(scope="module")
-def gains(plant):
+def gains(plant: MultibodyPlant) -> tuple[Array, Array]:
     return joint_gains(plant, JointGains())
 
 
-def floating_human(time_step, gains, limited=True, law="implicit"):
+def floating_human(
+    time_step: float, gains: tuple[Array, Array] | None, limited: bool = True, law: PdLaw = "implicit"
+) -> tuple[DiagramBuilder, MultibodyPlant]:
     """The human in a diagram, in zero gravity and without ground; gains installed if given."""
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, time_step)
@@ -41,7 +46,7 @@ def floating_human(time_step, gains, limited=True, law="implicit"):
     return builder, plant
 
 
-def remove_limits(plant):
+def remove_limits(plant: MultibodyPlant) -> None:
     """No effort limits and no joint stops: either would catch what diverges."""
     for i in range(plant.num_actuators()):
         actuator = plant.get_mutable_joint_actuator(JointActuatorIndex(i))
@@ -50,23 +55,23 @@ def remove_limits(plant):
 
 
 @pytest.fixture(scope="module")
-def discrete_plant(gains):
+def discrete_plant(gains: tuple[Array, Array]) -> MultibodyPlant:
     """The human with implicit gains at 1 ms."""
     return floating_human(0.001, gains)[1]
 
 
 @pytest.fixture(scope="module")
-def implicit(discrete_plant, gains):
+def implicit(discrete_plant: MultibodyPlant, gains: tuple[Array, Array]) -> PdActuatorBank:
     return PdActuatorBank(discrete_plant, *gains)
 
 
 @pytest.fixture(scope="module")
-def explicit(plant, gains):
+def explicit(plant: MultibodyPlant, gains: tuple[Array, Array]) -> PdActuatorBank:
     """The explicit law for a continuous plant, which has no time step."""
     return PdActuatorBank(plant, *gains, law="explicit")
 
 
-def context_with(bank, **inputs):
+def context_with(bank: PdActuatorBank, **inputs: Any) -> Context:
     context = bank.CreateDefaultContext()
     for name, value in inputs.items():
         bank.GetInputPort(name).FixValue(context, value)
@@ -76,7 +81,7 @@ def context_with(bank, **inputs):
 # ---- ports
 
 
-def test_ports(implicit, explicit, discrete_plant):
+def test_ports(implicit: PdActuatorBank, explicit: PdActuatorBank, discrete_plant: MultibodyPlant) -> None:
     sizes = {
         "desired_state": 2 * N,
         "sample_time": 1,
@@ -102,8 +107,8 @@ def test_ports(implicit, explicit, discrete_plant):
     assert not explicit.HasOutputPort("plant_desired_state")
 
 
-def test_the_implicit_law_does_not_feed_the_state_through(implicit, explicit):
-    def feeds_through(bank):
+def test_the_implicit_law_does_not_feed_the_state_through(implicit: PdActuatorBank, explicit: PdActuatorBank) -> None:
+    def feeds_through(bank: Any) -> bool:
         return bank.HasDirectFeedthrough(
             bank.GetInputPort("state").get_index(), bank.GetOutputPort("actuation").get_index()
         )
@@ -112,7 +117,7 @@ def test_the_implicit_law_does_not_feed_the_state_through(implicit, explicit):
     assert feeds_through(explicit)
 
 
-def test_signals_have_a_column_per_element(implicit):
+def test_signals_have_a_column_per_element(implicit: PdActuatorBank) -> None:
     assert [signal.name for signal in implicit.signals] == ["desired_state", "torque", "saturated"]
     assert all(len(signal.columns) == signal.port.size() for signal in implicit.signals)
     assert implicit.signals[0].columns[N] == implicit.signals[1].columns[0].replace(
@@ -125,7 +130,13 @@ def test_signals_have_a_column_per_element(implicit):
 
 @settings(max_examples=30)
 @given(rng=seeds)
-def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explicit, plant, joints, gains, rng):
+def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(
+    explicit: PdActuatorBank,
+    plant: MultibodyPlant,
+    joints: JointMap,
+    gains: tuple[Array, Array],
+    rng: np.random.Generator,
+) -> None:
     """Errors from tiny to large, so that some joints saturate and others do not."""
     scale = 10.0 ** rng.uniform(-4, 0)
     state = np.zeros(plant.num_multibody_states())
@@ -142,14 +153,16 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(explici
         assert actual[i] == pytest.approx(min(max(tau, -limit), limit), rel=1e-9, abs=1e-9), name
 
 
-def test_feedforward_defaults_to_zero(explicit, plant):
+def test_feedforward_defaults_to_zero(explicit: PdActuatorBank, plant: MultibodyPlant) -> None:
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=np.zeros(2 * N), state=state)
     np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", ["implicit", "explicit"])
-def test_joints_at_the_effort_limit_are_reported(implicit, explicit, joints, gains, law):
+def test_joints_at_the_effort_limit_are_reported(
+    implicit: PdActuatorBank, explicit: PdActuatorBank, joints: JointMap, gains: tuple[Array, Array], law: PdLaw
+) -> None:
     bank, torque = {"implicit": implicit, "explicit": explicit}[law], 0.5 * joints.effort_limits
     torque[3], torque[7] = 1.01 * joints.effort_limits[3], -1.01 * joints.effort_limits[7]
     desired = np.concatenate((torque / gains[0], np.zeros(N)))
@@ -159,7 +172,7 @@ def test_joints_at_the_effort_limit_are_reported(implicit, explicit, joints, gai
     assert set(saturated) == {0.0, 1.0}
 
 
-def test_the_implicit_law_passes_the_feedforward(implicit):
+def test_the_implicit_law_passes_the_feedforward(implicit: PdActuatorBank) -> None:
     tau = np.arange(float(N))
     context = context_with(implicit, desired_state=np.ones(2 * N), feedforward=tau)
     np.testing.assert_allclose(implicit.GetOutputPort("actuation").Eval(context), tau, atol=1e-12)
@@ -169,7 +182,7 @@ def test_the_implicit_law_passes_the_feedforward(implicit):
 
 @settings(max_examples=20)
 @given(rng=seeds)
-def test_semi_implicit_actuation_compensates_the_damping_of_the_plant(rng):
+def test_semi_implicit_actuation_compensates_the_damping_of_the_plant(rng: np.random.Generator) -> None:
     """Torque and the plant's damping together are the law, also where a joint is at its limit."""
     kp, kd = np.full(N, 100.0), np.linspace(1.0, 20.0, N)
     limits = np.full(N, 50.0)
@@ -190,7 +203,7 @@ def test_semi_implicit_actuation_compensates_the_damping_of_the_plant(rng):
     np.testing.assert_array_equal(saturated, (np.abs(law) >= limits).astype(float))
 
 
-def test_the_semi_implicit_law_adds_its_damping_to_that_of_the_joints(gains):
+def test_the_semi_implicit_law_adds_its_damping_to_that_of_the_joints(gains: tuple[Array, Array]) -> None:
     _, bare = floating_human(0.001, None)
     _, plant = floating_human(0.001, gains, law="semi_implicit")
     for i in range(N):
@@ -199,10 +212,10 @@ def test_the_semi_implicit_law_adds_its_damping_to_that_of_the_joints(gains):
         np.testing.assert_allclose(joint.default_damping_vector(), own + gains[1][i])
 
 
-def test_semi_implicit_and_implicit_law_move_the_body_alike(gains):
+def test_semi_implicit_and_implicit_law_move_the_body_alike(gains: tuple[Array, Array]) -> None:
     """Both are of first order in the step, so a tenth of the step leaves a tenth of the difference."""
 
-    def difference(time_step):
+    def difference(time_step: float) -> float:
         ends = [
             perturbed_run(time_step, gains, law, steps=round(0.01 / time_step)) for law in ("implicit", "semi_implicit")
         ]
@@ -212,12 +225,12 @@ def test_semi_implicit_and_implicit_law_move_the_body_alike(gains):
 
 
 @pytest.mark.parametrize("time_step", [0.0005, 0.001, 0.002])
-def test_the_semi_implicit_law_is_stable_with_the_thesis_gains(gains, time_step):
+def test_the_semi_implicit_law_is_stable_with_the_thesis_gains(gains: tuple[Array, Array], time_step: float) -> None:
     assert perturbed_run(time_step, gains, "semi_implicit", steps=300) < 0.01
 
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
-def test_the_torque_output_is_the_one_that_acted_in_the_last_step(gains, law):
+def test_the_torque_output_is_the_one_that_acted_in_the_last_step(gains: tuple[Array, Array], law: PdLaw) -> None:
     """From rest, M v' = tau h less the joints' own damping; at an impact any other moment's v would be far off."""
     h = 0.001
     _, bare = floating_human(h, None)
@@ -250,7 +263,9 @@ def test_the_torque_output_is_the_one_that_acted_in_the_last_step(gains, law):
 
 
 @given(rng=seeds, age=st.floats(0.0, 0.02))
-def test_after_the_sample_the_desired_state_is_held_to_first_order(implicit, rng, age):
+def test_after_the_sample_the_desired_state_is_held_to_first_order(
+    implicit: PdActuatorBank, rng: np.random.Generator, age: float
+) -> None:
     q, v = rng.normal(size=(2, N))
     context = context_with(implicit, desired_state=np.concatenate((q, v)), sample_time=[1.0])
     context.SetTime(1.0 + age)
@@ -262,7 +277,9 @@ def test_after_the_sample_the_desired_state_is_held_to_first_order(implicit, rng
 
 
 @given(rng=seeds, share=st.floats(-0.5, 1.5))
-def test_between_samples_the_desired_state_is_their_cubic(implicit, rng, share):
+def test_between_samples_the_desired_state_is_their_cubic(
+    implicit: PdActuatorBank, rng: np.random.Generator, share: float
+) -> None:
     x0, x1 = rng.normal(size=(2, 2 * N))
     samples = {"previous_state": x0, "previous_time": [1.0], "desired_state": x1, "sample_time": [1.01]}
     context, t = context_with(implicit, **samples), 1.0 + 0.01 * share
@@ -272,7 +289,14 @@ def test_between_samples_the_desired_state_is_their_cubic(implicit, rng, share):
 
 
 @given(rng=seeds, age=st.floats(-0.01, 0.02))
-def test_the_law_follows_the_desired_state_between_samples(explicit, plant, joints, gains, rng, age):
+def test_the_law_follows_the_desired_state_between_samples(
+    explicit: PdActuatorBank,
+    plant: MultibodyPlant,
+    joints: JointMap,
+    gains: tuple[Array, Array],
+    rng: np.random.Generator,
+    age: float,
+) -> None:
     """With and without a previous sample, and with a feedforward that changes."""
     kp, kd = gains
     state, feedforward = 1e-4 * rng.normal(size=plant.num_multibody_states()), rng.normal(size=N)
@@ -290,14 +314,16 @@ def test_the_law_follows_the_desired_state_between_samples(explicit, plant, join
             explicit.GetInputPort("feedforward").FixValue(context, feedforward)
 
 
-def test_without_sample_time_the_desired_state_is_current(implicit):
+def test_without_sample_time_the_desired_state_is_current(implicit: PdActuatorBank) -> None:
     desired = np.arange(2.0 * N)
     context = context_with(implicit, desired_state=desired)
     context.SetTime(7.0)
     np.testing.assert_allclose(implicit.GetOutputPort("held_desired_state").Eval(context), desired, atol=1e-12)
 
 
-def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
+def test_explicit_law_follows_the_held_angles(
+    explicit: PdActuatorBank, plant: MultibodyPlant, gains: tuple[Array, Array]
+) -> None:
     desired = np.concatenate((np.zeros(N), 0.01 * np.ones(N)))
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=desired, sample_time=[0.0], state=state)
@@ -309,7 +335,9 @@ def test_explicit_law_follows_the_held_angles(explicit, plant, gains):
 # ---- stability, with the thesis' ankle gains on the floating human
 
 
-def perturbed_run(time_step, gains, law, steps, unchecked=False):
+def perturbed_run(
+    time_step: float, gains: tuple[Array, Array], law: PdLaw, steps: int, unchecked: bool = False
+) -> float:
     """Largest joint angle at the end of a run from 0.01 rad, without limits."""
     builder, plant = floating_human(time_step, gains, limited=False, law=law)
     joints = JointMap.of(plant)
@@ -338,7 +366,7 @@ def perturbed_run(time_step, gains, law, steps, unchecked=False):
     return np.abs(plant.GetPositions(context)[joints.q]).max()
 
 
-def named_step(kp, kd):
+def named_step(kp: Array, kd: Array) -> float:
     """The largest step that the error message names."""
     _, plant = floating_human(0.01, None)
     with pytest.raises(ParameterError, match=r"explicit is unstable at time_step 0\.01 s") as refusal:
@@ -351,27 +379,29 @@ def named_step(kp, kd):
 
 
 @pytest.fixture(scope="module")
-def stable_step(gains):
+def stable_step(gains: tuple[Array, Array]) -> float:
     return named_step(*gains)
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.7, 0.4, 0.1])
-def test_the_step_named_by_the_error_is_accepted(gains, scale):
+def test_the_step_named_by_the_error_is_accepted(gains: tuple[Array, Array], scale: float) -> None:
     kp, kd = scale * gains[0], scale * gains[1]
     step = named_step(kp, kd)
     PdActuatorBank(floating_human(step, None)[1], kp, kd, law="explicit")
 
 
-def test_the_explicit_law_is_stable_at_nine_tenths_of_the_named_step(stable_step, gains):
+def test_the_explicit_law_is_stable_at_nine_tenths_of_the_named_step(
+    stable_step: float, gains: tuple[Array, Array]
+) -> None:
     assert perturbed_run(0.9 * stable_step, gains, "explicit", steps=400) < 0.01
 
 
-def test_the_explicit_law_diverges_at_one_and_a_half_of_it(stable_step, gains):
+def test_the_explicit_law_diverges_at_one_and_a_half_of_it(stable_step: float, gains: tuple[Array, Array]) -> None:
     assert not perturbed_run(1.5 * stable_step, gains, "explicit", steps=20, unchecked=True) < 1.0
 
 
 @pytest.mark.parametrize("time_step", [0.0005, 0.001, 0.005])
-def test_the_implicit_law_is_stable_at_any_step(time_step, gains):
+def test_the_implicit_law_is_stable_at_any_step(time_step: float, gains: tuple[Array, Array]) -> None:
     assert perturbed_run(time_step, gains, "implicit", steps=round(0.2 / time_step)) < 0.01
 
 
@@ -381,19 +411,21 @@ def test_the_implicit_law_is_stable_at_any_step(time_step, gains):
 KP, KD, Q_D, V_D = 100.0, 10.0, 0.2, 1.0
 
 
-def one_joint(time_step, kp=KP, kd=KD):
+def one_joint(
+    time_step: float, kp: Any = KP, kd: Any = KD
+) -> tuple[DiagramBuilder, MultibodyPlant, ModelInstanceIndex]:
     """A wheel of 1 kg m2 about a vertical axis, alone in a diagram builder."""
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, time_step)
     wheel = plant.AddRigidBody("wheel", SpatialInertia(1.0, np.zeros(3), UnitInertia(1.0, 1.0, 1.0)))
     joint = plant.AddJoint(RevoluteJoint("axle", plant.world_frame(), wheel.body_frame(), [0, 0, 1]))
     plant.AddJointActuator("motor", joint, 1000.0)
-    install_gains(plant, [kp], [kd])
+    install_gains(plant, [kp], [kd])  # type: ignore[arg-type]
     plant.Finalize()
     return builder, plant, wheel.model_instance()
 
 
-def settled_state(builder, plant, time_step, duration=3.0):
+def settled_state(builder: DiagramBuilder, plant: MultibodyPlant, time_step: float, duration: float = 3.0) -> Array:
     """[q, v] at the end of a run; a continuous plant is integrated by CENIC."""
     simulator = Simulator(builder.Build())
     if time_step == 0:
@@ -403,7 +435,7 @@ def settled_state(builder, plant, time_step, duration=3.0):
     return plant.GetPositionsAndVelocities(plant.GetMyContextFromRoot(simulator.get_context()))
 
 
-def settled_by_drake(time_step):
+def settled_by_drake(time_step: float) -> float:
     """Equilibrium of Drake's PD at a constant desired state: q_d + kd / kp v_d."""
     builder, plant, instance = one_joint(time_step)
     desired = builder.AddSystem(ConstantVectorSource([Q_D, V_D]))
@@ -411,7 +443,7 @@ def settled_by_drake(time_step):
     return settled_state(builder, plant, time_step)[0]
 
 
-def settled_by_bank(time_step, desired_state, kp=KP, kd=KD):
+def settled_by_bank(time_step: float, desired_state: list[float], kp: float = KP, kd: float = KD) -> Array:
     builder, plant, instance = one_joint(time_step, kp, kd)
     bank = builder.AddSystem(PdActuatorBank(plant, np.array([kp]), np.array([kd])))
     desired = builder.AddSystem(ConstantVectorSource(desired_state))
@@ -421,7 +453,7 @@ def settled_by_bank(time_step, desired_state, kp=KP, kd=KD):
     return settled_state(builder, plant, time_step)
 
 
-def test_drake_discrete_desired_velocity_sign():
+def test_drake_discrete_desired_velocity_sign() -> None:
     assert settled_by_drake(0.001) == pytest.approx(Q_D + KD / KP * V_D, abs=1e-4)
 
 
@@ -430,23 +462,25 @@ def test_drake_discrete_desired_velocity_sign():
     raises=AssertionError,
     reason="Drake 1.58: CENIC subtracts the desired velocity; when this passes, remove the workaround in the bank",
 )
-def test_drake_cenic_desired_velocity_sign():
+def test_drake_cenic_desired_velocity_sign() -> None:
     assert settled_by_drake(0.0) == pytest.approx(Q_D + KD / KP * V_D, abs=1e-4)
 
 
-def test_the_bank_gives_cenic_the_right_sign():
+def test_the_bank_gives_cenic_the_right_sign() -> None:
     q, v = settled_by_bank(0.0, [Q_D, V_D])
     assert q == pytest.approx(Q_D + KD / KP * V_D, abs=1e-4)
     assert v == pytest.approx(0.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("time_step", [0.0, 0.001])
-def test_a_joint_without_stiffness_reaches_its_desired_rate(time_step):
+def test_a_joint_without_stiffness_reaches_its_desired_rate(time_step: float) -> None:
     _, v = settled_by_bank(time_step, [0.0, V_D], kp=0.0)
     assert v == pytest.approx(V_D, abs=1e-3)
 
 
-def test_for_a_continuous_plant_desired_rates_are_torque_and_recorded_unchanged(plant, gains):
+def test_for_a_continuous_plant_desired_rates_are_torque_and_recorded_unchanged(
+    plant: MultibodyPlant, gains: tuple[Array, Array]
+) -> None:
     bank = PdActuatorBank(plant, *gains)
     desired, tau = np.arange(2.0 * N), np.ones(N)
     context = context_with(bank, desired_state=desired, sample_time=[0.0], feedforward=tau)

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.math import SpatialVelocity
+from pydrake.multibody.plant import MultibodyPlant
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.systems.playback_state import PlaybackState
 
 ANGLES = np.linspace(-0.3, 0.3, 42)
@@ -14,18 +16,18 @@ V_WP = SpatialVelocity([0.4, 0.5, 0.6], [0.7, 0.8, 0.9])
 
 
 @pytest.fixture
-def system(plant):
+def system(plant: MultibodyPlant) -> PlaybackState:
     return PlaybackState(plant)
 
 
-def test_ports(system):
+def test_ports(system: PlaybackState) -> None:
     inputs = [system.get_input_port(i) for i in range(system.num_input_ports())]
     assert [(port.get_name(), port.size()) for port in inputs] == [("pelvis_reference", 13), ("desired_state", 84)]
     (output,) = [system.get_output_port(i) for i in range(system.num_output_ports())]
     assert (output.get_name(), output.size()) == ("state", 97)
 
 
-def test_state_is_the_reference(system, plant, joints):
+def test_state_is_the_reference(system: PlaybackState, plant: MultibodyPlant, joints: JointMap) -> None:
     context = system.CreateDefaultContext()
     reference = (X_WP.rotation().ToQuaternion().wxyz(), X_WP.translation(), V_WP.get_coeffs())
     system.GetInputPort("pelvis_reference").FixValue(context, np.concatenate(reference))
@@ -40,6 +42,6 @@ def test_state_is_the_reference(system, plant, joints):
         assert (joint.get_angle(body), joint.get_angular_rate(body)) == pytest.approx((ANGLES[i], RATES[i]))
 
 
-def test_unconnected_input_is_refused(system):
+def test_unconnected_input_is_refused(system: PlaybackState) -> None:
     with pytest.raises(RuntimeError, match="pelvis_reference"):
         system.GetOutputPort("state").Eval(system.CreateDefaultContext())

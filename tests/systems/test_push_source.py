@@ -1,30 +1,33 @@
 """The push source: force times duration is the impulse; random pushes follow from the seed."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
 
 from humanwalk.body.limbs import CHEST
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.push_source import PushSource
 from humanwalk.walking.push import Push, PushParameters, all_pushes
 
 
-def at(source, time):
+def at(source: PushSource, time: float) -> tuple[Array | list[ExternallyAppliedSpatialForce] | list[Any], ...]:
     context = source.CreateDefaultContext()
     context.SetTime(time)
     return source.GetOutputPort("spatial_forces").Eval(context), source.GetOutputPort("force").Eval(context)
 
 
 @pytest.fixture
-def source(plant):
+def source(plant: MultibodyPlant) -> PushSource:
     return PushSource(plant, PushParameters((Push(2.0, 0.1, 30.0, math.pi / 2), Push(2.05, 0.1, 10.0))), seed=0)
 
 
-def test_ports_and_signal(source):
+def test_ports_and_signal(source: PushSource) -> None:
     (signal,) = source.signals
     assert (signal.name, signal.port.get_name()) == ("push", "force")
     assert signal.columns == ("push.force_x_N", "push.force_y_N", "push.force_z_N")
@@ -35,13 +38,13 @@ def test_ports_and_signal(source):
 @pytest.mark.parametrize(
     "time, force", [(1.99, (0, 0, 0)), (2.0, (0, 300, 0)), (2.07, (100, 300, 0)), (2.12, (100, 0, 0)), (3.0, (0, 0, 0))]
 )
-def test_force_over_time(source, time, force):
+def test_force_over_time(source: PushSource, time: float, force: tuple[int, int, int]) -> None:
     forces, total = at(source, time)
     assert total == pytest.approx(force, abs=1e-9)
     assert sum((f.F_Bq_W.translational() for f in forces), np.zeros(3)) == pytest.approx(force, abs=1e-9)
 
 
-def test_the_force_acts_at_the_center_of_mass_of_the_body(plant, source):
+def test_the_force_acts_at_the_center_of_mass_of_the_body(plant: MultibodyPlant, source: PushSource) -> None:
     (force,), _ = at(source, 2.0)
     body = plant.get_body(force.body_index)
     assert body.name() == CHEST
@@ -49,7 +52,7 @@ def test_the_force_acts_at_the_center_of_mass_of_the_body(plant, source):
     assert force.F_Bq_W.rotational() == pytest.approx([0, 0, 0])
 
 
-def test_a_context_may_hold_other_pushes(source):
+def test_a_context_may_hold_other_pushes(source: PushSource) -> None:
     context = source.CreateDefaultContext()
     source.set_pushes(context, [Push(1.0, 0.1, 20.0)])
     context.SetTime(1.05)
@@ -59,21 +62,21 @@ def test_a_context_may_hold_other_pushes(source):
         source.set_pushes(context, [Push(body="Rib")])
 
 
-def test_an_unknown_body_is_a_one_line_error_that_names_the_nearest(plant):
+def test_an_unknown_body_is_a_one_line_error_that_names_the_nearest(plant: MultibodyPlant) -> None:
     message = r"^pushes\.body: Rib: no such body; allowed: the 44 bodies of the model; did you mean Ribs\?$"
     with pytest.raises(ParameterError, match=message):
         PushSource(plant, PushParameters((Push(body="Rib"),)), seed=0)
 
 
 @given(st.floats(0.01, 2.0), st.floats(0.1, 100.0), st.floats(-math.pi, math.pi))
-def test_force_times_duration_is_the_impulse(duration, impulse, direction):
+def test_force_times_duration_is_the_impulse(duration: float, impulse: float, direction: float) -> None:
     push = Push(1.0, duration, impulse, direction)
     x, y, z = (duration * f for f in push.force)
     assert (math.hypot(x, y), z) == pytest.approx((impulse, 0.0))
     assert math.remainder(math.atan2(y, x) - direction, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_random_pushes_follow_from_the_seed():
+def test_random_pushes_follow_from_the_seed() -> None:
     parameters = PushParameters(random_interval=2.0, random_impulse=15.0, random_until=30.0)
     pushes = all_pushes(parameters, seed=3)
     assert pushes == all_pushes(parameters, seed=3)

@@ -6,12 +6,13 @@ from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RotationMatrix
 
 from humanwalk.motion.recorded_motion import RecordedMotion
+from humanwalk.numerics import Array
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 
 N = 3
 
 
-def motion(ease_in=0.3, period=0.02, duration=1.0):
+def motion(ease_in: float = 0.3, period: float = 0.02, duration: float = 1.0) -> RecordedMotion:
     time = np.arange(0, duration + 0.5 * period, period)
     angles = np.column_stack([np.sin((i + 2) * time) for i in range(N)])
     turns = np.column_stack((0.1 * np.sin(3 * time), 0.2 * np.cos(2 * time), 0.5 * time))
@@ -19,7 +20,7 @@ def motion(ease_in=0.3, period=0.02, duration=1.0):
     return RecordedMotion(time, angles, turns, place, ease_in)
 
 
-def at(source, time):
+def at(source: RecordedPostureSource, time: float) -> dict[str, Array]:
     context = source.CreateDefaultContext()
     context.SetTime(time)
     reference = source.GetOutputPort("pelvis_reference").Eval(context)
@@ -32,7 +33,7 @@ def at(source, time):
     }
 
 
-def test_ports_are_those_of_the_docstring():
+def test_ports_are_those_of_the_docstring() -> None:
     source = RecordedPostureSource(motion())
     names = [source.get_output_port(i).get_name() for i in range(source.num_output_ports())]
     assert names == ["desired_state", "pelvis_reference"]
@@ -41,7 +42,7 @@ def test_ports_are_those_of_the_docstring():
 
 
 @pytest.mark.parametrize("ease_in", [0.0, 0.3])
-def test_the_motion_passes_through_its_samples_after_the_ease_in(ease_in):
+def test_the_motion_passes_through_its_samples_after_the_ease_in(ease_in: float) -> None:
     recorded = motion(ease_in)
     source = RecordedPostureSource(recorded)
     for row in (20, 33, 50):
@@ -51,7 +52,7 @@ def test_the_motion_passes_through_its_samples_after_the_ease_in(ease_in):
 
 
 @pytest.mark.parametrize("time", [0.05, 0.2, 0.37, 0.71, 1.11])
-def test_velocities_are_time_derivatives(time):
+def test_velocities_are_time_derivatives(time: float) -> None:
     source, h = RecordedPostureSource(motion()), 1e-6
     before, now, after = at(source, time - h), at(source, time), at(source, time + h)
     rate = (after["desired_state"][:N] - before["desired_state"][:N]) / (2 * h)
@@ -63,7 +64,7 @@ def test_velocities_are_time_derivatives(time):
     np.testing.assert_allclose(now["w_WP"], w, atol=1e-5)
 
 
-def test_motion_starts_and_ends_at_rest():
+def test_motion_starts_and_ends_at_rest() -> None:
     recorded = motion()
     source = RecordedPostureSource(recorded)
     for time, row in ((0.0, 0), (recorded.duration + 1.0, -1)):
@@ -75,7 +76,7 @@ def test_motion_starts_and_ends_at_rest():
 
 
 @pytest.mark.parametrize("period", [0.005, 0.01, 0.02, 0.04])
-def test_the_sampling_rate_hardly_matters(period):
+def test_the_sampling_rate_hardly_matters(period: float) -> None:
     """Resampling: the curve between samples is the recorded motion, whatever the rate."""
     source = RecordedPostureSource(motion(ease_in=0.0, period=period))
     for time in (0.1234, 0.5, 0.777):
@@ -84,7 +85,7 @@ def test_the_sampling_rate_hardly_matters(period):
         )
 
 
-def test_curve_does_not_overshoot_its_samples():
+def test_curve_does_not_overshoot_its_samples() -> None:
     time = np.arange(6.0)
     step = np.array([0, 0, 0, 1, 1, 1.0])[:, None]
     recorded = RecordedMotion(time, step, np.zeros((6, 3)), np.zeros((6, 3)), 0.0)
@@ -93,13 +94,13 @@ def test_curve_does_not_overshoot_its_samples():
     assert max(values) <= 1 + 1e-12
 
 
-def test_two_samples_are_enough():
+def test_two_samples_are_enough() -> None:
     recorded = RecordedMotion(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]), np.zeros((2, 3)), np.zeros((2, 3)), 0.0)
     angle, rate = recorded.joints(0.25)
     assert (angle[0], rate[0]) == pytest.approx((0.25, 1.0))
 
 
-def test_the_pelvis_is_recorded():
+def test_the_pelvis_is_recorded() -> None:
     (signal,) = RecordedPostureSource(motion()).signals
     assert signal.name == "pelvis_reference"
     assert len(signal.columns) == signal.port.size()

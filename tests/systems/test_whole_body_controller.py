@@ -2,25 +2,31 @@
 
 import numpy as np
 import pytest
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.numerics import Array
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.step_planner import StepPlanner
+from humanwalk.walking.walking_reference import WalkingReference
 
 PERIOD = 0.004
 
 
 @pytest.fixture
-def controller(plant, skeleton):
+def controller(plant: MultibodyPlant, skeleton: Skeleton) -> WholeBodyController:
     return WholeBodyController(plant, skeleton, WholeBodyParameters(), {ARMS["Left"].elbow: 0.4}, PERIOD, Plane())
 
 
 @pytest.fixture
-def standing(plant, joints):
+def standing(plant: MultibodyPlant, joints: JointMap) -> Array:
     q = plant.GetPositions(plant.CreateDefaultContext())
     for leg in LEGS.values():
         for joint, angle in ((leg.hip_flexion, 0.12), (leg.knee, 0.24), (leg.ankle, 0.12)):
@@ -30,24 +36,24 @@ def standing(plant, joints):
 
 
 @pytest.fixture
-def plan(controller, standing):
+def plan(controller: WholeBodyController, standing: Array) -> WalkingReference:
     body = controller._dynamics.body_state(standing, {"Right": 350.0, "Left": 350.0}, Plane())
     planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
     return planner.update(planner.start(body), body, Command())[1]
 
 
-def updated(controller, context):
+def updated(controller: WholeBodyController, context: Context) -> None:
     context.SetDiscreteState(controller.EvalUniquePeriodicDiscreteUpdate(context))
 
 
-def context_with(controller, state, plan):
+def context_with(controller: WholeBodyController, state: Array, plan: WalkingReference) -> Context:
     context = controller.CreateDefaultContext()
     controller.GetInputPort("state").FixValue(context, state)
     controller.GetInputPort("plan").FixValue(context, plan)
     return context
 
 
-def test_ports(controller):
+def test_ports(controller: WholeBodyController) -> None:
     outputs = [controller.get_output_port(i) for i in range(controller.num_output_ports())]
     assert [(port.get_name(), port.size()) for port in outputs] == [
         ("torque", 42),
@@ -57,7 +63,9 @@ def test_ports(controller):
     ]
 
 
-def test_both_knees_support_the_body(controller, joints, standing, plan):
+def test_both_knees_support_the_body(
+    controller: WholeBodyController, joints: JointMap, standing: Array, plan: WalkingReference
+) -> None:
     context = context_with(controller, standing, plan)
     updated(controller, context)
     torque = controller.GetOutputPort("torque").Eval(context)
@@ -68,7 +76,9 @@ def test_both_knees_support_the_body(controller, joints, standing, plan):
     assert knee[0] < -10.0
 
 
-def test_arms_move_toward_their_posture(controller, joints, standing, plan):
+def test_arms_move_toward_their_posture(
+    controller: WholeBodyController, joints: JointMap, standing: Array, plan: WalkingReference
+) -> None:
     context = context_with(controller, standing, plan)
     updated(controller, context)
     rates = controller.GetOutputPort("desired_state").Eval(context)[42:]
@@ -76,7 +86,9 @@ def test_arms_move_toward_their_posture(controller, joints, standing, plan):
     assert rates[joints.names.index(ARMS["Right"].elbow)] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_after_qp_failures_the_last_torque_is_held_for_a_while(controller, standing, plan):
+def test_after_qp_failures_the_last_torque_is_held_for_a_while(
+    controller: WholeBodyController, standing: Array, plan: WalkingReference
+) -> None:
     context = context_with(controller, standing, plan)
     updated(controller, context)
     held = controller.GetOutputPort("torque").Eval(context).copy()

@@ -1,4 +1,5 @@
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -9,7 +10,7 @@ from humanwalk.view.replay import replay_page
 
 
 @pytest.fixture(scope="session")
-def short_run_folder(tmp_path_factory):
+def short_run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run of 0.02 s with a replay page that contains no motion."""
     folder = tmp_path_factory.mktemp("short") / "run"
     simulate(load_scenario("thesis", {"duration": "0.02"})).save(folder)
@@ -18,6 +19,6 @@ def short_run_folder(tmp_path_factory):
 
 
 @pytest.fixture
-def run(short_run_folder, tmp_path):
+def run(short_run_folder: Path, tmp_path: Path) -> Path:
     """A copy of the folder, to change."""
     return shutil.copytree(short_run_folder, tmp_path / "run")

@@ -2,18 +2,22 @@ import hashlib
 import io
 import os
 import zlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from matplotlib.lines import Line2D
 from PIL import Image, ImageFilter
 
 from humanwalk.measures.human_likeness import ANGLES, CYCLE, people
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
-from humanwalk.scenario import load_scenario
+from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.view.plots import PLOTS, write_gait_figures, write_plots
 from humanwalk.view.plots.drawing import SIDE
 from humanwalk.view.plots.gait_figures import GAIT_FIGURES
@@ -31,7 +35,7 @@ THESIS_NAMES = {name for name in PLOTS if name.startswith("figure_5_")}
 UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]", "[W/kg]")
 
 
-def made_up_signals(columns, duration: float) -> pa.Table:
+def made_up_signals(columns: tuple[str, ...], duration: float) -> pa.Table:
     """A walk of sines: every column different, each foot on the ground for 60 % of its stride."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
     data = {name: np.sin(2 * np.pi * time / STRIDE + zlib.crc32(name.encode()) % 1000) for name in columns}
@@ -46,10 +50,15 @@ def made_up_signals(columns, duration: float) -> pa.Table:
 
 
 @pytest.fixture
-def make_run(tmp_path, columns):
+def make_run(tmp_path: Path, columns: tuple[str, ...]) -> Callable[..., Any]:
     """Writes the run of made-up signals, by its duration [s], whether it is supported, and a change of its signals."""
 
-    def make(duration: float = 6.0, supported: bool = True, change=lambda signals: signals, scenario=None):
+    def make(
+        duration: float = 6.0,
+        supported: bool = True,
+        change: Callable[..., Any] = lambda signals: signals,
+        scenario: Scenario | None = None,
+    ) -> Run:
         overrides = {
             "controller.thesis.balance.support.enabled": str(supported).lower(),
             "recording.signal_period": str(PERIOD),
@@ -65,26 +74,26 @@ def make_run(tmp_path, columns):
     return make
 
 
-def title(figure) -> str:
+def title(figure: Any) -> str:
     return figure.get_suptitle()
 
 
 @pytest.mark.parametrize("name", sorted(THESIS_NAMES))
-def test_only_the_thesis_walk_has_numbers_and_levels_of_the_thesis(make_run, name):
+def test_only_the_thesis_walk_has_numbers_and_levels_of_the_thesis(make_run: Callable[..., Any], name: str) -> None:
     assert "Figure 5." in title(PLOTS[name](make_run()))
     balanced = PLOTS[name](
         make_run(supported=False, scenario=load_scenario("walk", {"recording.signal_period": str(PERIOD)}))
     )
     texts = [title(balanced), *(line.get_label() for axes in balanced.axes for line in axes.get_lines())]
-    assert [text for text in texts if "Figure" in text or "thesis" in text] == []
+    assert [text for text in texts if "Figure" in text or "thesis" in text] == []  # type: ignore[operator]
 
 
-def line(figure, text: str):
+def line(figure: Any, text: str) -> Line2D:
     (found,) = (line for axes in figure.axes for line in axes.get_lines() if line.get_label() == text)
     return found
 
 
-def test_every_plot_of_a_walk_is_written_under_its_name(make_run):
+def test_every_plot_of_a_walk_is_written_under_its_name(make_run: Callable[..., Any]) -> None:
     run = make_run()
     written = write_plots(run)
     assert [path.name for path in written] == [f"{name}.png" for name in PLOTS]
@@ -92,13 +101,13 @@ def test_every_plot_of_a_walk_is_written_under_its_name(make_run):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
 
 
-def test_all_of_figures_5_8_to_5_21_exist():
+def test_all_of_figures_5_8_to_5_21_exist() -> None:
     numbers = [int(name.split("_")[2]) for name in PLOTS if name.startswith("figure_5_")]
     assert numbers == list(range(8, 22))
 
 
 @pytest.mark.parametrize("name", PLOTS)
-def test_a_plot_has_a_title_and_units(make_run, name):
+def test_a_plot_has_a_title_and_units(make_run: Callable[..., Any], name: str) -> None:
     figure = PLOTS[name](make_run())
     title = figure.get_suptitle()
     if name.startswith("figure_"):
@@ -126,12 +135,14 @@ def test_a_plot_has_a_title_and_units(make_run, name):
         ("figure_5_17_left_foot_y", "left_sole.y_m", 100.0),
     ],
 )
-def test_the_whole_run_is_shown_in_the_units_of_the_thesis(make_run, name, column, scale):
+def test_the_whole_run_is_shown_in_the_units_of_the_thesis(
+    make_run: Callable[..., Any], name: str, column: Any, scale: Any
+) -> None:
     run = make_run()
     quantity = column.split(".")[1].split("_")[0]
     shown = line(PLOTS[name](run), quantity if quantity in ("angle", "torque") else "sole")
     np.testing.assert_array_equal(shown.get_xdata(), run.signals[TIME].to_numpy())
-    np.testing.assert_allclose(shown.get_ydata(), scale * run.signals[column].to_numpy())
+    np.testing.assert_allclose(shown.get_ydata(), scale * run.signals[column].to_numpy())  # type: ignore[arg-type]
     assert shown.get_color() == SIDE["Left" if column.startswith("left") else "Right"]
 
 
@@ -142,22 +153,26 @@ def test_the_whole_run_is_shown_in_the_units_of_the_thesis(make_run, name, colum
         ("figure_5_10_right_ankle_angle", "RightLegAnkleMotion.desired_angle_rad"),
     ],
 )
-def test_the_first_four_seconds_show_the_desired_angle_too(make_run, name, column):
+def test_the_first_four_seconds_show_the_desired_angle_too(
+    make_run: Callable[..., Any], name: str, column: Any
+) -> None:
     run = make_run()
     first = run.signals[TIME].to_numpy() <= 4.0
     shown = line(PLOTS[name](run), "desired")
     np.testing.assert_array_equal(shown.get_xdata(), run.signals[TIME].to_numpy()[first])
-    np.testing.assert_allclose(shown.get_ydata(), np.degrees(run.signals[column].to_numpy()[first]))
+    np.testing.assert_allclose(shown.get_ydata(), np.degrees(run.signals[column].to_numpy()[first]))  # type: ignore[arg-type]
 
 
-def test_the_lateral_threshold_lies_half_a_centimeter_to_both_sides_of_the_initial_position(make_run):
+def test_the_lateral_threshold_lies_half_a_centimeter_to_both_sides_of_the_initial_position(
+    make_run: Callable[..., Any],
+) -> None:
     run = make_run()
     (axes,) = PLOTS["figure_5_17_left_foot_y"](run).axes
-    levels = sorted(line.get_ydata()[0] for line in axes.get_lines() if line.get_linestyle() == "--")
+    levels = sorted(line.get_ydata()[0] for line in axes.get_lines() if line.get_linestyle() == "--")  # type: ignore[index, type-var]
     assert levels == pytest.approx([9.5, 10.5])
 
 
-def test_the_support_is_called_external_and_its_rms_is_that_of_the_summary(make_run):
+def test_the_support_is_called_external_and_its_rms_is_that_of_the_summary(make_run: Callable[..., Any]) -> None:
     run = make_run()
     for name, key, unit in (
         ("support_force", "support_force_rms_N", "N"),
@@ -168,18 +183,18 @@ def test_the_support_is_called_external_and_its_rms_is_that_of_the_summary(make_
         assert f"rms {run.summary[key]:.0f} {unit} " in title
 
 
-def test_the_ground_reaction_covers_the_last_two_seconds_and_marks_the_weight(make_run):
+def test_the_ground_reaction_covers_the_last_two_seconds_and_marks_the_weight(make_run: Callable[..., Any]) -> None:
     figure = PLOTS["ground_reaction"](make_run())
     vertical, fore_aft = figure.axes
     for axes in (vertical, fore_aft):
         right, left = axes.get_lines()[:2]
         assert (right.get_color(), left.get_color()) == (SIDE["Right"], SIDE["Left"])
-        assert np.ptp(right.get_xdata()) == pytest.approx(2.0, abs=2 * PERIOD)
+        assert np.ptp(right.get_xdata()) == pytest.approx(2.0, abs=2 * PERIOD)  # type: ignore[arg-type]
     (weight,) = (line for line in vertical.get_lines() if line.get_label().startswith("body weight"))
-    assert weight.get_ydata()[0] == pytest.approx(WEIGHT, rel=1e-3)
+    assert weight.get_ydata()[0] == pytest.approx(WEIGHT, rel=1e-3)  # type: ignore[index]
 
 
-def test_the_center_of_pressure_is_drawn_only_while_the_foot_is_loaded(make_run):
+def test_the_center_of_pressure_is_drawn_only_while_the_foot_is_loaded(make_run: Callable[..., Any]) -> None:
     run = make_run()
     (axes,) = PLOTS["center_of_pressure"](run).axes
     dots = line(axes.figure, "center of pressure, right")
@@ -188,32 +203,32 @@ def test_the_center_of_pressure_is_drawn_only_while_the_foot_is_loaded(make_run)
     assert run.signals["right_foot.force_z_N"].to_numpy()[drawn].min() > 0.0
 
 
-def test_leg_torques_run_from_one_touchdown_to_the_next(make_run):
+def test_leg_torques_run_from_one_touchdown_to_the_next(make_run: Callable[..., Any]) -> None:
     for axes in PLOTS["joint_torques"](make_run()).axes:
         for side in ("right", "left"):
             (torque,) = (line for line in axes.get_lines() if line.get_label() == side)
             assert (torque.get_xdata().min(), torque.get_xdata().max()) == pytest.approx((0.0, 100.0))
 
 
-def test_the_tracking_error_has_a_bar_for_every_joint(make_run):
+def test_the_tracking_error_has_a_bar_for_every_joint(make_run: Callable[..., Any]) -> None:
     run = make_run()
     figure = PLOTS["tracking_error"](run)
     widths = [bar.get_width() for axes in figure.axes for bar in axes.patches]
     assert sorted(widths) == pytest.approx(sorted(np.degrees(list(run.summary["tracking_error_rad"].values()))))
 
 
-def test_a_run_without_support_has_no_plot_of_it(make_run):
+def test_a_run_without_support_has_no_plot_of_it(make_run: Callable[..., Any]) -> None:
     run = make_run(supported=False)
     assert {name for name, plot in PLOTS.items() if plot(run) is not None} == set(PLOTS) - NEED_SUPPORT
     assert write_plots(run, ["support"]) == []
 
 
-def test_a_run_that_ended_before_the_first_step_has_no_plots_of_strides(make_run):
+def test_a_run_that_ended_before_the_first_step_has_no_plots_of_strides(make_run: Callable[..., Any]) -> None:
     names = {path.stem for path in write_plots(make_run(duration=0.05))}
     assert names == set(PLOTS) - NEED_STRIDES - NEED_STEADY_WALK
 
 
-def test_one_sample_gives_no_plot(make_run):
+def test_one_sample_gives_no_plot(make_run: Callable[..., Any]) -> None:
     assert write_plots(make_run(duration=0.0)) == []
 
 
@@ -224,7 +239,9 @@ def test_one_sample_gives_no_plot(make_run):
         (["support", "ground"], {"support_force", "support_torque", "ground_reaction"}),
     ],
 )
-def test_some_plots_are_chosen_by_name_or_beginning(make_run, only, expected):
+def test_some_plots_are_chosen_by_name_or_beginning(
+    make_run: Callable[..., Any], only: list[str], expected: set[str]
+) -> None:
     run = make_run()
     assert {path.stem for path in write_plots(run, only)} == expected
     assert {path.stem for path in run.plots.iterdir()} == expected
@@ -233,7 +250,9 @@ def test_some_plots_are_chosen_by_name_or_beginning(make_run, only, expected):
 @pytest.mark.parametrize(
     ("arguments", "named"), [({"only": ["figure_9"]}, "tracking_error"), ({"format": "gif"}, "pdf")]
 )
-def test_an_unknown_name_or_format_is_refused_with_the_known_ones_and_nothing_written(make_run, arguments, named):
+def test_an_unknown_name_or_format_is_refused_with_the_known_ones_and_nothing_written(
+    make_run: Callable[..., Any], arguments: Any, named: str
+) -> None:
     run = make_run()
     with pytest.raises(ParameterError, match=f"allowed: .*{named}") as error:
         write_plots(run, **arguments)
@@ -242,7 +261,9 @@ def test_an_unknown_name_or_format_is_refused_with_the_known_ones_and_nothing_wr
 
 
 @pytest.mark.parametrize(("format", "beginning"), [("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")])
-def test_a_plot_is_the_same_bytes_every_time_in_every_format(make_run, format, beginning):
+def test_a_plot_is_the_same_bytes_every_time_in_every_format(
+    make_run: Callable[..., Any], format: str, beginning: bytes
+) -> None:
     run = make_run()
 
     def digest() -> str:
@@ -255,14 +276,14 @@ def test_a_plot_is_the_same_bytes_every_time_in_every_format(make_run, format, b
     assert digest() == digest()
 
 
-def test_plots_share_no_global_figure(make_run):
+def test_plots_share_no_global_figure(make_run: Callable[..., Any]) -> None:
     import matplotlib._pylab_helpers as pyplot_figures
 
     write_plots(make_run(), ["figure_5_08"])
     assert not pyplot_figures.Gcf.figs
 
 
-def test_figures_4_2_to_4_7_are_small_enough_for_the_documentation(tmp_path):
+def test_figures_4_2_to_4_7_are_small_enough_for_the_documentation(tmp_path: Path) -> None:
     written = write_gait_figures(tmp_path / "thesis")
     assert [int(path.stem.split("_")[2]) for path in written] == list(range(2, 8))
     assert all(path.stat().st_size < 60_000 for path in written)
@@ -272,25 +293,29 @@ def test_figures_4_2_to_4_7_are_small_enough_for_the_documentation(tmp_path):
     ("name", "start", "points"),
     [("figure_4_02_forward_path", (41.67, 0.0), 13), ("figure_4_04_backward_path", (8.33, 6.67), 12)],
 )
-def test_the_foot_path_of_a_cycle_is_closed_and_passes_through_its_control_points(name, start, points):
+def test_the_foot_path_of_a_cycle_is_closed_and_passes_through_its_control_points(
+    name: str, start: Any, points: Any
+) -> None:
     figure = GAIT_FIGURES[name]()
     path = line(figure, "Hermite spline").get_xydata()
     control = line(figure, "control points, in their order").get_xydata()
-    assert len(control) == points
-    np.testing.assert_allclose(control[0], start, atol=0.01)
-    np.testing.assert_allclose(path[0], path[-1], atol=1e-12)
-    assert all(np.abs(path - point).max(axis=1).min() < 1e-9 for point in control)
+    assert len(control) == points  # type: ignore[arg-type]
+    np.testing.assert_allclose(control[0], start, atol=0.01)  # type: ignore[arg-type, index]
+    np.testing.assert_allclose(path[0], path[-1], atol=1e-12)  # type: ignore[arg-type, index]
+    assert all(np.abs(path - point).max(axis=1).min() < 1e-9 for point in control)  # type: ignore[operator]
 
 
 @pytest.mark.parametrize("name", ["figure_4_06_forward_plot", "figure_4_07_backward_plot"])
-def test_the_points_of_a_path_begin_at_the_standing_foot(name):
+def test_the_points_of_a_path_begin_at_the_standing_foot(name: str) -> None:
     (axes,) = GAIT_FIGURES[name]().axes
-    points = next(line for line in axes.get_lines() if "points" in line.get_label()).get_xydata()
-    np.testing.assert_allclose(points[0], (25.0, -5.0))
+    points = next(line for line in axes.get_lines() if "points" in line.get_label()).get_xydata()  # type: ignore[operator]
+    np.testing.assert_allclose(points[0], (25.0, -5.0))  # type: ignore[arg-type, index]
     assert np.linalg.norm(np.diff(points, axis=0), axis=1).max() <= 1.4 + 1e-9
 
 
-def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_human_gait(make_run):
+def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_human_gait(
+    make_run: Callable[..., Any],
+) -> None:
     run = make_run()
     figure = PLOTS["gait_cycle_angles"](run)
     for axes, name in zip(figure.axes, ("hip", "knee", "ankle"), strict=True):
@@ -306,8 +331,8 @@ def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_hu
         assert band[:, 1].min() == pytest.approx((mean - sd).min())
 
 
-def test_power_is_torque_times_rate_per_mass(make_run):
-    def steady_power(signals):
+def test_power_is_torque_times_rate_per_mass(make_run: Callable[..., Any]) -> None:
+    def steady_power(signals: pa.Table) -> pa.Table:
         columns = {name: signals[name].to_numpy() for name in signals.column_names}
         columns["RightLegTibiaMotion.torque_N_m"] = np.full(len(signals), 35.0)
         columns["RightLegTibiaMotion.velocity_rad_s"] = np.full(len(signals), -2.0)
@@ -315,7 +340,7 @@ def test_power_is_torque_times_rate_per_mass(make_run):
 
     knee = PLOTS["joint_power"](make_run(change=steady_power)).axes[1]
     (shown,) = (line for line in knee.get_lines() if line.get_label().startswith("right"))
-    np.testing.assert_allclose(shown.get_ydata(), -1.0)
+    np.testing.assert_allclose(shown.get_ydata(), -1.0)  # type: ignore[arg-type]
 
 
 BASELINES = Path(__file__).parent.parent / "data" / "plots"
@@ -339,7 +364,7 @@ REVIEWED = (
 )
 
 
-def drawn(figure) -> Image.Image:
+def drawn(figure: Any) -> Image.Image:
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=IMAGE_DPI)
     return Image.open(file).convert("RGB")
@@ -354,7 +379,7 @@ def rms_difference(one: Image.Image, other: Image.Image) -> float:
 
 
 @pytest.mark.parametrize("name", REVIEWED)
-def test_a_plot_matches_its_reviewed_picture(make_run, name):
+def test_a_plot_matches_its_reviewed_picture(make_run: Callable[..., Any], name: str) -> None:
     picture = drawn(GAIT_FIGURES[name]() if name in GAIT_FIGURES else PLOTS[name](make_run()))
     baseline = BASELINES / f"{name}.png"
     if os.environ.get("WRITE_BASELINES"):
@@ -364,8 +389,8 @@ def test_a_plot_matches_its_reviewed_picture(make_run, name):
         assert rms_difference(picture, known.convert("RGB")) < IMAGE_TOLERANCE
 
 
-def test_another_curve_does_not_match_the_picture(make_run):
-    def late(signals):
+def test_another_curve_does_not_match_the_picture(make_run: Callable[..., Any]) -> None:
+    def late(signals: pa.Table) -> pa.Table:
         columns = {name: signals[name].to_numpy() for name in signals.column_names}
         columns["RightLegTibiaMotion.angle_rad"] = np.roll(columns["RightLegTibiaMotion.angle_rad"], 10)
         return pa.table(columns)

@@ -9,11 +9,14 @@ import threading
 import urllib.error
 import urllib.request
 import webbrowser
+from collections.abc import Iterator
 from contextlib import contextmanager
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import pytest
+from pydrake.geometry import Meshcat
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from rich.console import Console
@@ -23,6 +26,7 @@ from humanwalk.diagrams.walker import make_walker
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import REPLAY
 from humanwalk.scenario import load_scenario
+from humanwalk.sides import Side
 from humanwalk.terrain import Plane
 from humanwalk.view.replay import make_meshcat, replay_page, safe_page, static_page
 from humanwalk.view.serve import replay_server, serve_replay
@@ -37,28 +41,28 @@ TITLE = 'a "walk" & <more>'
 
 
 class Elements(HTMLParser):
-    def __init__(self, page):
+    def __init__(self, page: str) -> None:
         super().__init__()
         self.found = []
         self.text = {}
         self.feed(page)
 
-    def handle_starttag(self, tag, attributes):
+    def handle_starttag(self, tag: str, attributes: list[Any]) -> None:
         self.found.append((tag, dict(attributes)))
 
-    def handle_data(self, data):
+    def handle_data(self, data: str) -> None:
         if self.found:
             tag = self.found[-1][0]
             self.text[tag] = self.text.get(tag, "") + data
 
 
 @pytest.fixture(scope="module")
-def meshcat():
+def meshcat() -> Meshcat:
     return make_meshcat()
 
 
 @pytest.fixture(scope="module")
-def page(meshcat):
+def page(meshcat: Meshcat) -> str:
     builder = DiagramBuilder()
     walker = builder.AddSystem(make_walker(load_scenario("thesis")))
     ports = {name: walker.GetOutputPort(name) for name in ("query_object", "foot_forces")}
@@ -68,7 +72,7 @@ def page(meshcat):
 
 
 @pytest.fixture(scope="module")
-def animation(page):
+def animation(page: str) -> bytes:
     """The recorded animation in the page: one msgpack command."""
     commands = [base64.b64decode(code) for code in re.findall(r'"([A-Za-z0-9+/=]{100,})"', page)]
     (animation,) = [command for command in commands if b"set_animation" in command]
@@ -76,11 +80,11 @@ def animation(page):
 
 
 @pytest.fixture(scope="module")
-def elements(page):
+def elements(page: str) -> Elements:
     return Elements(page)
 
 
-def listening_addresses(port):
+def listening_addresses(port: int) -> set[str] | set[Any]:
     """Local addresses, in the kernel's hexadecimal, at which a port is listened to."""
     addresses = set()
     for table in (Path("/proc/net/tcp"), Path("/proc/net/tcp6")):
@@ -94,7 +98,7 @@ def listening_addresses(port):
     return addresses
 
 
-def test_no_element_of_the_page_names_another_file_or_host(elements):
+def test_no_element_of_the_page_names_another_file_or_host(elements: Elements) -> None:
     references = [
         attributes[name]
         for _, attributes in elements.found
@@ -105,12 +109,12 @@ def test_no_element_of_the_page_names_another_file_or_host(elements):
     assert all(reference.startswith("data:") for reference in references)
 
 
-def test_styles_refer_to_no_file(elements):
+def test_styles_refer_to_no_file(elements: Elements) -> None:
     assert "url(" not in elements.text["style"]
     assert "@import" not in elements.text["style"]
 
 
-def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements, page):
+def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements: Elements, page: str) -> None:
     (policy,) = [
         attributes["content"]
         for tag, attributes in elements.found
@@ -130,11 +134,11 @@ def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements, pa
     }
 
 
-def test_page_has_its_title_as_text(elements):
+def test_page_has_its_title_as_text(elements: Elements) -> None:
     assert elements.text["title"].strip() == TITLE
 
 
-def test_page_contains_the_recorded_walker_and_the_view_that_follows_it(animation):
+def test_page_contains_the_recorded_walker_and_the_view_that_follows_it(animation: bytes) -> None:
     for path in (b"/drake/visualizer/human/Pelvis", b"/drake/visualizer/human/LeftLeg_Tibia"):
         assert path in animation
     # A msgpack string is preceded by its length: the scene itself moves, not only what is in it.
@@ -143,7 +147,7 @@ def test_page_contains_the_recorded_walker_and_the_view_that_follows_it(animatio
 
 @pytest.mark.parametrize("side", ["Right", "Left"])
 @pytest.mark.parametrize("part", ["", "/head", "/shaft"])
-def test_force_arrows_are_recorded_at_every_frame(animation, side, part):
+def test_force_arrows_are_recorded_at_every_frame(animation: bytes, side: Side, part: str) -> None:
     """A track that ends before the others would repeat out of step with them."""
     path = f"/drake/foot_force/{side}{part}".encode()
     _, found, track = animation.partition(bytes([0xA0 + len(path)]) + path if len(path) < 32 else path)
@@ -153,13 +157,13 @@ def test_force_arrows_are_recorded_at_every_frame(animation, side, part):
     assert b"\xa4time" + last_frame in clip
 
 
-def test_page_has_one_player(elements):
+def test_page_has_one_player(elements: Elements) -> None:
     names = [attributes.get("id") for _, attributes in elements.found]
     assert names.count("player") == 1
     assert ("input", "range") in [(tag, attributes.get("type")) for tag, attributes in elements.found]
 
 
-def test_server_has_only_the_page():
+def test_server_has_only_the_page() -> None:
     with served(b"<p>the walk</p>") as root:
         with urllib.request.urlopen(f"{root}/") as answer:
             assert answer.read() == b"<p>the walk</p>"
@@ -175,7 +179,7 @@ def test_server_has_only_the_page():
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1.evil.example", ""])
-def test_server_refuses_names_of_other_hosts(host):
+def test_server_refuses_names_of_other_hosts(host: str) -> None:
     """A web site can have its name resolve to 127.0.0.1 to read what is served there."""
     with served(b"<p>the walk</p>") as root:
         with pytest.raises(urllib.error.HTTPError) as error:
@@ -185,7 +189,7 @@ def test_server_refuses_names_of_other_hosts(host):
 
 
 @contextmanager
-def served(page):
+def served(page: bytes) -> Iterator[str]:
     """The address of a running server."""
     with replay_server(page) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -195,14 +199,14 @@ def served(page):
             server.shutdown()
 
 
-def test_server_listens_on_the_loopback_only():
+def test_server_listens_on_the_loopback_only() -> None:
     with replay_server(b"") as server:
         assert server.socket.getsockname()[0] == "127.0.0.1"
         assert server.address_family == socket.AF_INET
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc/net/tcp to see open ports in")
-def test_meshcat_listens_on_the_loopback_only_and_only_when_live(meshcat):
+def test_meshcat_listens_on_the_loopback_only_and_only_when_live(meshcat: Meshcat) -> None:
     assert listening_addresses(meshcat.port()) == set()
     live = make_meshcat(live=True)
     addresses = listening_addresses(live.port())
@@ -210,10 +214,10 @@ def test_meshcat_listens_on_the_loopback_only_and_only_when_live(meshcat):
     assert addresses <= LOOPBACK
 
 
-def test_replay_opens_the_page_and_ends_at_ctrl_c(run, monkeypatch):
+def test_replay_opens_the_page_and_ends_at_ctrl_c(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
 
-    def browse_and_press_ctrl_c(url):
+    def browse_and_press_ctrl_c(url: str) -> None:
         with urllib.request.urlopen(url) as answer:
             seen.append(answer.read().decode())
         _thread.interrupt_main()
@@ -230,8 +234,8 @@ def test_replay_opens_the_page_and_ends_at_ctrl_c(run, monkeypatch):
     assert re.search(r"http://127\.0\.0\.1:\d+/", output.getvalue())
 
 
-def test_replay_does_not_open_the_browser_with_no_browser(run, monkeypatch):
-    def press_ctrl_c(self, *_):
+def test_replay_does_not_open_the_browser_with_no_browser(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def press_ctrl_c(self: Any, *_: object) -> None:
         raise KeyboardInterrupt
 
     opened = []
@@ -241,23 +245,23 @@ def test_replay_does_not_open_the_browser_with_no_browser(run, monkeypatch):
     assert opened == []
 
 
-def test_run_without_replay_produces_an_error_with_the_fix(run):
+def test_run_without_replay_produces_an_error_with_the_fix(run: Path) -> None:
     (run / REPLAY).unlink()
     with pytest.raises(ParameterError, match=r"no replay\.html; allowed: .*; walk again without --no-replay"):
         serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
 
 
-def test_folder_without_run_produces_an_error(tmp_path):
+def test_folder_without_run_produces_an_error(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="no run"):
         serve_replay(tmp_path, open_browser=False, console=Console(file=io.StringIO()))
 
 
-def test_safe_page_of_our_page_is_the_same_page(page, tmp_path):
+def test_safe_page_of_our_page_is_the_same_page(page: str, tmp_path: Path) -> None:
     (tmp_path / REPLAY).write_text(page, encoding="utf-8")
     assert safe_page(tmp_path / REPLAY) == page
 
 
-def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_path):
+def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_path: Path) -> None:
     foreign = "<script>alert(1)</script><img src=http://evil.example/x>"
     title = "&lt;b onload=alert(2)&gt;\x1b]0;evil\x07"
     page = replay_page(["AAAA", "BBBB"], "TITLE").replace("TITLE", title).replace("<body>", f"<body>{foreign}")
@@ -276,7 +280,7 @@ def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_
         '<script type="application/json" id="recording">["A"</script>',
     ],
 )
-def test_page_without_recording_produces_a_one_line_error(page, tmp_path):
+def test_page_without_recording_produces_a_one_line_error(page: str, tmp_path: Path) -> None:
     (tmp_path / REPLAY).write_text(page)
     with pytest.raises(ParameterError, match="no recording"):
         safe_page(tmp_path / REPLAY)

@@ -4,6 +4,9 @@ import base64
 import html
 import json
 import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from humanwalk.cli.main import app
 from humanwalk.measures.human_likeness import ANGLES
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.stored import required_columns
 from humanwalk.scenario import load_scenario
@@ -30,10 +34,10 @@ from humanwalk.view.report import (
 
 
 @pytest.fixture
-def make_run(walk, tmp_path):
+def make_run(walk: Callable[..., Any], tmp_path: Path) -> Callable[..., Any]:
     """Writes the run of a walk of people's angles, by how it ended and what it is made of."""
 
-    def make(end="completed", **made):
+    def make(end: str = "completed", **made: Any) -> Run:
         signals = walk(**made)
         for side in ("right", "left"):
             signals = signals.append_column(f"{side}_foot.force_x_N", signals[f"{side}_foot.force_z_N"])
@@ -48,11 +52,11 @@ def make_run(walk, tmp_path):
     return make
 
 
-def report(*arguments):
+def report(*arguments: Path | str) -> Any:
     return CliRunner().invoke(app, ["report", *map(str, arguments)], env={"COLUMNS": "120"})
 
 
-def test_every_angle_and_measure_has_a_row(make_run):
+def test_every_angle_and_measure_has_a_row(make_run: Callable[..., Any]) -> None:
     comparison = compare_run(make_run())
     angles, measures = list(curve_rows(comparison)), list(measure_rows(comparison))
     assert [row[0].split(",")[0] for row in angles] == list(ANGLES)
@@ -61,7 +65,7 @@ def test_every_angle_and_measure_has_a_row(make_run):
     assert all(len(row) == len(MEASURE_HEADER) for row in measures)
 
 
-def test_rows_have_value_human_range_and_source(make_run):
+def test_rows_have_value_human_range_and_source(make_run: Callable[..., Any]) -> None:
     comparison = compare_run(make_run())
     rows = {row[0]: row[1:] for row in measure_rows(comparison)}
     assert rows["speed [m/s]"][:2] == ("1.30 ± 0.00", "1.28 to 1.43")
@@ -72,7 +76,7 @@ def test_rows_have_value_human_range_and_source(make_run):
     assert rows["moment, knee extension [N m/kg]"][1:] == ("", "")
 
 
-def test_json_is_stride_by_stride(make_run):
+def test_json_is_stride_by_stride(make_run: Callable[..., Any]) -> None:
     told = to_json(compare_run(make_run()))
     assert told["strides"] == {"right": 7, "left": 7}
     for sides in told["angles"].values():
@@ -83,7 +87,7 @@ def test_json_is_stride_by_stride(make_run):
     json.dumps(told, allow_nan=False)
 
 
-def test_constant_angle_has_no_correlation(make_run):
+def test_constant_angle_has_no_correlation(make_run: Callable[..., Any]) -> None:
     run = make_run()
     knee = "RightLegTibiaMotion.angle_rad"
     still = [np.full(run.signals.num_rows, 0.3)]
@@ -93,7 +97,7 @@ def test_constant_angle_has_no_correlation(make_run):
     assert None not in told["angles"]["knee"]["right"]["rms_deg"]
 
 
-def test_page_is_self_contained(make_run):
+def test_page_is_self_contained(make_run: Callable[..., Any]) -> None:
     run = make_run()
     page = write_report(run, compare_run(run)).read_text()
     assert "A &lt;b&gt;walk&lt;/b&gt;" in page
@@ -107,7 +111,7 @@ def test_page_is_self_contained(make_run):
     assert page == write_report(run, compare_run(run)).read_text()
 
 
-def test_command_writes_the_page_and_prints_the_tables(make_run):
+def test_command_writes_the_page_and_prints_the_tables(make_run: Callable[..., Any]) -> None:
     run = make_run()
     result = report(run.path)
     assert result.exit_code == 0
@@ -118,7 +122,7 @@ def test_command_writes_the_page_and_prints_the_tables(make_run):
     assert (run.path / REPORT).is_file()
 
 
-def test_json_is_all_that_is_printed_and_nothing_is_written(make_run):
+def test_json_is_all_that_is_printed_and_nothing_is_written(make_run: Callable[..., Any]) -> None:
     run = make_run()
     result = report(run.path, "--json")
     assert json.loads(result.stdout) == to_json(compare_run(run))
@@ -126,20 +130,20 @@ def test_json_is_all_that_is_printed_and_nothing_is_written(make_run):
 
 
 @pytest.mark.parametrize("end", ["fell", "not a number", "solver failed: no"])
-def test_fallen_run_is_refused(make_run, end):
+def test_fallen_run_is_refused(make_run: Callable[..., Any], end: str) -> None:
     with pytest.raises(ParameterError, match=f"ended with '{end}' at 8.00 s; allowed"):
         compare_run(make_run(end))
 
 
 @pytest.mark.parametrize("end", ["interrupted", "unfinished"])
-def test_interrupted_run_is_compared_up_to_its_end(make_run, end):
+def test_interrupted_run_is_compared_up_to_its_end(make_run: Callable[..., Any], end: str) -> None:
     assert compare_run(make_run(end)).strides["Right"] == 7
 
 
 @pytest.mark.parametrize(
     ("made", "said"), [({"standing": True}, "0 of the right leg"), ({"duration": 1.9}, "strides: ")]
 )
-def test_run_without_strides_is_refused(make_run, made, said):
+def test_run_without_strides_is_refused(make_run: Callable[..., Any], made: dict[str, bool | float], said: str) -> None:
     run = make_run(**made)
     with pytest.raises(ParameterError, match=said) as error:
         compare_run(run)
@@ -147,11 +151,11 @@ def test_run_without_strides_is_refused(make_run, made, said):
     assert "\n" not in str(error.value)
 
 
-def test_failed_write_keeps_the_previous_page(make_run, monkeypatch):
+def test_failed_write_keeps_the_previous_page(make_run: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
     run = make_run()
     (run.path / REPORT).write_text("before")
 
-    def full(self, *arguments, **options):
+    def full(self: Any, *arguments: str, **options: Any) -> None:
         raise OSError(28, "No space left on device")
 
     comparison = compare_run(run)

@@ -1,6 +1,8 @@
 import math
 import sys
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,7 +23,9 @@ from humanwalk.view.video import VideoParameters, camera, find_ffmpeg, parse_siz
         (VideoParameters(frame_rate=32.0, speed=7.0), 69, 14.875),
     ],
 )
-def test_frames_are_evenly_spaced_and_stay_in_the_selected_part(parameters, count, last):
+def test_frames_are_evenly_spaced_and_stay_in_the_selected_part(
+    parameters: VideoParameters, count: int, last: float
+) -> None:
     times = parameters.times(15.0)
     assert len(times) == count
     assert times[0] == parameters.begin
@@ -40,19 +44,19 @@ def test_frames_are_evenly_spaced_and_stay_in_the_selected_part(parameters, coun
         ({"view": "top"}, "--view top: unknown; allowed: follow, side, front, orbit"),
     ],
 )
-def test_invalid_parameters_produce_a_one_line_error(arguments, message):
+def test_invalid_parameters_produce_a_one_line_error(arguments: Any, message: str) -> None:
     with pytest.raises(ParameterError, match=message) as error:
         VideoParameters(**arguments)
     assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(("begin", "end"), [(-1.0, None), (16.0, None), (2.0, 1.0), (0.0, 15.5)])
-def test_times_outside_the_replay_are_refused(begin, end):
+def test_times_outside_the_replay_are_refused(begin: float, end: float | None) -> None:
     with pytest.raises(ParameterError, match=r"--(from|to): .*allowed: .* to 15 s"):
         VideoParameters(begin=begin, end=end).times(15.0)
 
 
-def test_sizes_and_times_are_parsed():
+def test_sizes_and_times_are_parsed() -> None:
     assert parse_size("1280x720") == (1280, 720)
     assert parse_times("1.0,1.5") == [1.0, 1.5]
     for text in ("1280", "1280x", "x720", "12.5x10", "1280X720p"):
@@ -63,7 +67,7 @@ def test_sizes_and_times_are_parsed():
             parse_times(text)
 
 
-def test_the_orbit_returns_after_its_period_and_keeps_its_distance():
+def test_the_orbit_returns_after_its_period_and_keeps_its_distance() -> None:
     begin, quarter, end = (camera("orbit", time).position for time in (0.0, 2.5, 10.0))
     assert end == pytest.approx(begin)
     assert math.hypot(*quarter[:2]) == pytest.approx(math.hypot(*begin[:2]))
@@ -71,12 +75,12 @@ def test_the_orbit_returns_after_its_period_and_keeps_its_distance():
     assert begin == pytest.approx(camera("follow", 0.0).position)
 
 
-def test_an_unknown_format_is_refused(run):
+def test_an_unknown_format_is_refused(run: Path) -> None:
     with pytest.raises(ParameterError, match=r"walk\.avi: unknown video format; allowed: \.mp4, \.gif, \.webp"):
         record_video(run, run / "walk.avi", VideoParameters())
 
 
-def test_a_run_without_replay_is_refused(run):
+def test_a_run_without_replay_is_refused(run: Path) -> None:
     (run / REPLAY).unlink()
     with pytest.raises(ParameterError, match=r"no replay\.html.*without --no-replay"):
         record_video(run, run / "walk.mp4", VideoParameters())
@@ -85,7 +89,9 @@ def test_a_run_without_replay_is_refused(run):
 @pytest.mark.parametrize(
     ("module", "need"), [("playwright.sync_api", "playwright"), ("imageio_ffmpeg", "imageio-ffmpeg")]
 )
-def test_missing_package_produces_an_error_with_the_command(run, monkeypatch, module, need):
+def test_missing_package_produces_an_error_with_the_command(
+    run: Path, monkeypatch: pytest.MonkeyPatch, module: str, need: str
+) -> None:
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ParameterError, match=rf"{need}: not installed.*pip install -e '\.\[video\]'"):
         if need == "playwright":
@@ -95,7 +101,7 @@ def test_missing_package_produces_an_error_with_the_command(run, monkeypatch, mo
             find_ffmpeg()
 
 
-def test_the_browser_of_the_environment_comes_first_and_must_run(monkeypatch):
+def test_the_browser_of_the_environment_comes_first_and_must_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CHROMIUM", sys.executable)
     assert find_browser() == sys.executable
     monkeypatch.setenv("CHROMIUM", "/no/such/browser")
@@ -103,15 +109,17 @@ def test_the_browser_of_the_environment_comes_first_and_must_run(monkeypatch):
         find_browser()
 
 
-def test_without_any_browser_playwright_looks_for_its_own(monkeypatch):
+def test_without_any_browser_playwright_looks_for_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CHROMIUM", raising=False)
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("humanwalk.view.browser.MACOS_BROWSERS", ())
     assert find_browser() is None
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run, monkeypatch):
-    def never(*_):
+def test_a_folder_that_cannot_be_written_is_refused_before_a_frame_is_drawn(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
         raise AssertionError("a browser was opened")
 
     monkeypatch.setattr("humanwalk.view.video.open_stage", never)
@@ -122,6 +130,6 @@ def test_a_folder_that_cannot_be_written_is_refused_before_a_frame_is_drawn(run,
 
 
 @pytest.mark.parametrize(("user", "sandbox"), [(0, False), (1000, True)])
-def test_chromium_keeps_its_sandbox_except_for_root(monkeypatch, user, sandbox):
+def test_chromium_keeps_its_sandbox_except_for_root(monkeypatch: pytest.MonkeyPatch, user: int, sandbox: bool) -> None:
     monkeypatch.setattr("os.geteuid", lambda: user)
     assert has_sandbox() is sandbox

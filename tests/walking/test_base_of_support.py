@@ -14,19 +14,19 @@ headings = st.floats(-3.0, 3.0)
 
 
 @given(points, points, headings, st.booleans())
-def test_it_stays_on_the_stance_foot(zmp, stance, heading, on_ball):
+def test_it_stays_on_the_stance_foot(zmp: complex, stance: complex, heading: float, on_ball: bool) -> None:
     kept = (SUPPORT.clamp(zmp, stance, heading, on_ball=on_ball) - stance) / cmath.exp(1j * heading)
     assert (SUPPORT.ball if on_ball else -SUPPORT.back) - 1e-9 <= kept.real <= SUPPORT.front + 1e-9
     assert abs(kept.imag) <= SUPPORT.half_width + 1e-9
 
 
 @given(points, points, headings)
-def test_a_point_within_the_base_of_support_is_not_moved(zmp, stance, heading):
+def test_a_point_within_the_base_of_support_is_not_moved(zmp: complex, stance: complex, heading: float) -> None:
     once = SUPPORT.clamp(zmp, stance, heading)
     assert SUPPORT.clamp(once, stance, heading) == pytest.approx(once, abs=1e-9)
 
 
-def test_between_two_feet_it_may_be_anywhere_on_the_line_of_the_ankles():
+def test_between_two_feet_it_may_be_anywhere_on_the_line_of_the_ankles() -> None:
     for fraction in (0.0, 0.3, 0.7, 1.0):
         zmp = fraction * (0.6 + 0.16j)
         assert SUPPORT.clamp(zmp, 0.6 + 0.16j, 0.0, other=0.0) == pytest.approx(zmp)
@@ -34,7 +34,7 @@ def test_between_two_feet_it_may_be_anywhere_on_the_line_of_the_ankles():
 
 
 @given(st.floats(-3.0, 3.0))
-def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forward(heading):
+def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forward(heading: float) -> None:
     u = cmath.exp(1j * heading)
     stance, old = 0.5 * u, 0.16j * u
     outward, back = (SUPPORT.clamp(stance + error * u, stance, heading, old) for error in (-0.2 - 0.2j, -0.2))
@@ -43,5 +43,5 @@ def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forwar
     assert abs(back - stance) > SUPPORT.back + SUPPORT.half_width
 
 
-def test_the_nominal_zero_moment_point_is_ahead_of_the_ankle():
+def test_the_nominal_zero_moment_point_is_ahead_of_the_ankle() -> None:
     assert SUPPORT.center_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.center)

@@ -12,7 +12,7 @@ speeds = st.floats(-1.0, 1.6)
 
 
 @given(st.floats(0.0, STEP), speeds)
-def test_rates_are_derivatives(t, speed):
+def test_rates_are_derivatives(t: float, speed: float) -> None:
     h = 1e-5
     before, here, after = (HEIGHT.arc(t + d, STEP, speed) for d in (-h, 0.0, h))
     assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], abs=1e-5)
@@ -20,17 +20,17 @@ def test_rates_are_derivatives(t, speed):
 
 
 @given(speeds)
-def test_the_top_is_as_high_at_every_speed(speed):
+def test_the_top_is_as_high_at_every_speed(speed: float) -> None:
     top = HEIGHT.arc(HEIGHT.delay + 0.5 * STEP, STEP, speed)[0]
     assert top == pytest.approx(HEIGHT.arc_amplitude(speed))
 
 
-def test_it_is_lowest_soon_after_touchdown():
+def test_it_is_lowest_soon_after_touchdown() -> None:
     heights = {t / 100: HEIGHT.arc(t / 100, STEP, 1.4)[0] for t in range(52)}
-    assert min(heights, key=heights.get) == pytest.approx(HEIGHT.delay)
+    assert min(heights, key=heights.get) == pytest.approx(HEIGHT.delay)  # type: ignore[arg-type]
 
 
-def test_in_standing_there_is_no_arc():
+def test_in_standing_there_is_no_arc() -> None:
     assert HEIGHT.arc(0.2, STEP, 0.0) == pytest.approx((0.0, 0.0, 0.0))
 
 
@@ -39,7 +39,7 @@ distances = st.floats(-0.5, 0.5)
 
 
 @given(distances, distances)
-def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x, y):
+def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x: float, y: float) -> None:
     highest = HEIGHT.max_com_height_for_reach(complex(x, y), LEG, STANDING)
     assert highest <= STANDING
     beyond = max(abs(x) - FREE_REACH, 0.0), max(abs(y) - FREE_SPREAD, 0.0)
@@ -47,17 +47,19 @@ def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x, y):
     assert hip**2 + beyond[0] ** 2 + beyond[1] ** 2 == pytest.approx(LEG**2)
 
 
-def test_an_ordinary_step_needs_no_lower_body():
+def test_an_ordinary_step_needs_no_lower_body() -> None:
     assert HEIGHT.max_com_height_for_reach(0.37 + 0.08j, LEG, STANDING) == STANDING
 
 
-def test_it_is_lowered_for_a_long_step_faster_than_it_rises():
+def test_it_is_lowered_for_a_long_step_faster_than_it_rises() -> None:
     lowered, ordinary = HEIGHT.approach(0.95, 0.0, 0.97, 0.90), HEIGHT.approach(0.95, 0.0, 0.90, 1.0)
     assert lowered < ordinary < 0.0
 
 
 @given(st.floats(0.8, 1.0), st.floats(0.8, 1.0), st.floats(0.8, 1.1))
-def test_the_mean_height_reaches_its_goal_within_the_limit_without_overshoot(start, goal, limit):
+def test_the_mean_height_reaches_its_goal_within_the_limit_without_overshoot(
+    start: float, goal: float, limit: float
+) -> None:
     height, rate, end = start, 0.0, min(goal, limit)
     for _ in range(1000):
         rate += 0.004 * HEIGHT.approach(height, rate, goal, limit)

@@ -15,14 +15,14 @@ FOLLOWING = PathFollowing()
 STRAIGHT, TURNING = Command(0.6), Command(0.6, 0.0, 0.2)
 
 
-def walked(command, duration, start=START, dt=0.02):
+def walked(command: Command, duration: float, start: CommandedPath = START, dt: float = 0.02) -> CommandedPath:
     path = start
     for _ in range(round(duration / dt)):
         path = path.advanced(command, dt)
     return path
 
 
-def test_a_constant_turn_is_a_circle():
+def test_a_constant_turn_is_a_circle() -> None:
     for duration in (2.0, 7.0, 12.0):
         end = walked(TURNING, duration).end
         assert abs(end.position - 3.0j) == pytest.approx(3.0, abs=1e-3)
@@ -30,16 +30,16 @@ def test_a_constant_turn_is_a_circle():
         assert end.distance == pytest.approx(0.6 * duration)
 
 
-def test_sideways_is_to_the_left():
+def test_sideways_is_to_the_left() -> None:
     assert walked(Command(0.0, 0.3, 0.0), 2.0).end.position == pytest.approx(0.6j)
 
 
-def test_the_number_of_stored_places_is_bounded():
+def test_the_number_of_stored_places_is_bounded() -> None:
     assert len(walked(STRAIGHT, 20.0).places) == len(walked(STRAIGHT, 10.0).places)
 
 
 @given(st.floats(-0.5, 1.5))
-def test_the_nearest_place_of_a_walker_on_the_path_is_its_own(lag):
+def test_the_nearest_place_of_a_walker_on_the_path_is_its_own(lag: float) -> None:
     """Ahead of the command too."""
     path = walked(TURNING, 6.0)
     there = walked(TURNING, 6.0 - lag / 0.6).end
@@ -50,7 +50,7 @@ def test_the_nearest_place_of_a_walker_on_the_path_is_its_own(lag):
 
 
 @given(st.floats(0.05, 0.5))
-def test_before_the_corner_the_nearest_place_is_on_the_straight(lag):
+def test_before_the_corner_the_nearest_place_is_on_the_straight(lag: float) -> None:
     """The command already turns."""
     corner = walked(STRAIGHT, 3.0)
     nearest = walked(TURNING, 1.0, corner).nearest(corner.end.position - lag, TURNING)
@@ -58,13 +58,13 @@ def test_before_the_corner_the_nearest_place_is_on_the_straight(lag):
     assert nearest.turn == 0.0
 
 
-def test_on_the_spot_the_walker_turns_with_the_command():
+def test_on_the_spot_the_walker_turns_with_the_command() -> None:
     path = CommandedPath.begin(1.0, 0.7)
     assert path.nearest(0.5j, Command(0.0, 0.0, 0.5)) == path.end
 
 
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-math.pi, math.pi))
-def test_the_correction_points_to_the_path_and_is_bounded(x, y, heading):
+def test_the_correction_points_to_the_path_and_is_bounded(x: float, y: float, heading: float) -> None:
     path = walked(STRAIGHT, 3.0, CommandedPath.begin(0.3 + 0.1j, heading))
     away = complex(x, y) * cmath.exp(1j * heading)
     own = path.end.position - FOLLOWING.lag * STRAIGHT.velocity * cmath.exp(1j * heading)
@@ -76,13 +76,13 @@ def test_the_correction_points_to_the_path_and_is_bounded(x, y, heading):
     assert abs(correction.imag) <= FOLLOWING.lane_speed_limit + 1e-9
 
 
-def test_at_the_nominal_place_there_is_no_correction():
+def test_at_the_nominal_place_there_is_no_correction() -> None:
     path = walked(STRAIGHT, 2.0)
     own = path.end.position - FOLLOWING.lag * STRAIGHT.velocity
     assert FOLLOWING.correction(path, path.nearest(own, STRAIGHT), own, STRAIGHT) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_the_path_waits_for_a_walker_that_was_held_up_but_keeps_its_lane():
+def test_the_path_waits_for_a_walker_that_was_held_up_but_keeps_its_lane() -> None:
     lead = FOLLOWING.pace_speed_limit / FOLLOWING.pace_gain
     path = walked(STRAIGHT, 5.0)
     far = path.end.position - lead - 0.5 + 0.4j

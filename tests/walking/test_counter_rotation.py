@@ -12,12 +12,14 @@ from humanwalk.walking.walking_reference import BodyState, FootState
 points = st.builds(complex, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 
 
-def foot(position, velocity=0j):
+def foot(position: complex, velocity: complex = 0j) -> FootState:
     return FootState(position, velocity, height=0.07, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=350.0)
 
 
 @given(points, points, st.floats(-3.0, 3.0))
-def test_the_lead_does_not_depend_on_position_and_orientation_in_the_world(offset, velocity, heading):
+def test_the_lead_does_not_depend_on_position_and_orientation_in_the_world(
+    offset: complex, velocity: complex, heading: float
+) -> None:
     u = cmath.exp(1j * heading)
     right, left = foot(offset), foot(offset + (0.3 + 0.1j) * u, velocity * u)
     body = BodyState(com=offset, com_velocity=0j, com_height=0.97, right=right, left=left)

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.sides import Side
 from humanwalk.walking.foot_placement import ABREAST, MAX_LENGTH, OUTWARD, StepPlacement, foothold_gain
 
 PLACEMENT = StepPlacement()
@@ -14,7 +15,9 @@ places = st.builds(complex, st.floats(-1.0, 1.0), st.floats(-0.5, 0.5))
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), sides, places)
-def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(x, y, stance, place):
+def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(
+    x: float, y: float, stance: Side, place: complex
+) -> None:
     foothold, excess = PLACEMENT.within_reach(complex(x, y), stance, place)
     width = OUTWARD[stance] * foothold.imag
     assert abs(foothold.real) <= MAX_LENGTH
@@ -25,7 +28,7 @@ def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(x, y, stance, pl
 
 
 @given(st.floats(0.16, 0.9), sides)
-def test_a_foot_crosses_only_after_it_has_passed_the_stance_foot(x, stance):
+def test_a_foot_crosses_only_after_it_has_passed_the_stance_foot(x: float, stance: Side) -> None:
     desired = complex(x, -OUTWARD[stance])
     widths = [
         OUTWARD[stance] * PLACEMENT.within_reach(desired, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)
@@ -35,59 +38,61 @@ def test_a_foot_crosses_only_after_it_has_passed_the_stance_foot(x, stance):
 
 
 @given(st.floats(-1.0, 1.0), st.floats(0.0, 0.5))
-def test_the_minimum_width_decreases_with_the_distance_ahead_or_behind(x, farther):
+def test_the_minimum_width_decreases_with_the_distance_ahead_or_behind(x: float, farther: float) -> None:
     assert PLACEMENT.min_step_width(abs(x) + farther) <= PLACEMENT.min_step_width(x) == PLACEMENT.min_step_width(-x)
 
 
 @given(st.floats(-0.6, 0.7), st.floats(0.1, 0.34), sides)
-def test_a_foothold_within_reach_is_not_moved_and_keeps_the_clock(x, width, stance):
+def test_a_foothold_within_reach_is_not_moved_and_keeps_the_clock(x: float, width: float, stance: Side) -> None:
     desired = complex(x, OUTWARD[stance] * width)
     assert PLACEMENT.within_reach(desired, stance, 0.0) == (desired, 0.0)
 
 
 @pytest.mark.parametrize("desired", [0.5 - 0.1j, 0.5 + 0.6j, 0.97 + 0.16j, -0.97 + 0.16j])
-def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(desired):
+def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(desired: complex) -> None:
     assert PLACEMENT.within_reach(desired, "Right", 0.0)[1] > 0.0
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-1.0, 1.5), sides)
-def test_the_crossover_distance_is_measured_across_the_stance_foot(x, width, stance):
+def test_the_crossover_distance_is_measured_across_the_stance_foot(x: float, width: float, stance: Side) -> None:
     beside = complex(-0.4, OUTWARD[stance] * 0.15)
     across = PLACEMENT.crossover_distance(complex(x, OUTWARD[stance] * width), stance, beside)
     assert across == pytest.approx(max(-width, 0.0))
 
 
-def test_a_foot_that_is_itself_across_does_not_hurry_to_cross():
+def test_a_foot_that_is_itself_across_does_not_hurry_to_cross() -> None:
     for side, outward in OUTWARD.items():
         assert PLACEMENT.crossover_distance(1j * outward, side, complex(-0.4, -0.05 * outward)) == 0.0
 
 
-def test_left_and_right_are_mirror_images():
+def test_left_and_right_are_mirror_images() -> None:
     right, excess_right = PLACEMENT.within_reach(0.4 + 0.9j, "Right", 0.2)
     left, excess_left = PLACEMENT.within_reach(0.4 - 0.9j, "Left", 0.2)
     assert right == left.conjugate()
     assert excess_right == excess_left
 
 
-def test_the_foothold_gain_tends_to_one_without_double_support():
+def test_the_foothold_gain_tends_to_one_without_double_support() -> None:
     assert foothold_gain(3.2, 1e-6) == pytest.approx(1.0, abs=1e-5)
     assert foothold_gain(3.2, 0.2) > foothold_gain(3.2, 0.1) > 1.0
 
 
 @given(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), sides)
-def test_only_a_foot_that_would_hit_the_stance_foot_has_a_waypoint(x, width, goal, stance):
+def test_only_a_foot_that_would_hit_the_stance_foot_has_a_waypoint(
+    x: float, width: float, goal: float, stance: Side
+) -> None:
     outward = OUTWARD[stance]
     waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * 0.16), stance)
     if width >= PLACEMENT.min_width or x * goal >= 0.0:
         assert waypoint is None
     else:
-        point, fraction = waypoint
+        point, fraction = waypoint  # type: ignore[misc]
         assert point == complex(0.0, outward * PLACEMENT.passing_distance)
         assert x + fraction * (goal - x) == pytest.approx(0.0, abs=1e-9)
 
 
 @given(st.floats(-1.5, 1.5), st.floats(-0.5, 0.5), st.floats(-0.5, 0.8))
-def test_a_foothold_is_within_reach_of_the_center_of_mass_at_touchdown(x, y, com):
+def test_a_foothold_is_within_reach_of_the_center_of_mass_at_touchdown(x: float, y: float, com: float) -> None:
     foothold = PLACEMENT.near_com(complex(x, y), complex(com, 0.1))
     assert abs(foothold.real - com) <= PLACEMENT.max_com_distance + 1e-12
     assert foothold.imag == y

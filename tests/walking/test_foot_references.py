@@ -20,13 +20,13 @@ WALK = Command(1.0)
 OLD, STANCE, NEXT = Foothold(-0.1j, 0.0), Foothold(0.5 + 0.1j, 0.0), Foothold(1.0 - 0.1j, 0.0)
 
 
-def state_at(elapsed, steps=1):
+def state_at(elapsed: float, steps: int = 1) -> PlannerState:
     phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
     path = CommandedPath.begin(0.0, 0.0)
     return PlannerState(phase, elapsed, "Left", OLD, STANCE, 0.0, 0.0, 0.0, path, height=0.9, steps=steps)
 
 
-def swing_to(foothold, toes=0.5):
+def swing_to(foothold: Foothold, toes: float = 0.5) -> Swing:
     foot = FootState(OLD.position, 0j, ANKLE + 0.05, height_rate=0.2, yaw=0.1, pitch=0.9, pitch_rate=3.0, force=0.0)
     profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing)
     return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes)
@@ -41,25 +41,27 @@ def swing_to(foothold, toes=0.5):
         (TIMING.step - 0.5 * ROCKERS.ball, 1, FootTask.HEEL_OFF),
     ],
 )
-def test_the_stance_foot_rolls_from_heel_strike_to_heel_off(elapsed, steps, task):
+def test_the_stance_foot_rolls_from_heel_strike_to_heel_off(elapsed: float, steps: int, task: FootTask) -> None:
     reference = stance_foot(state_at(elapsed, steps), swing_to(NEXT), WALK, PARAMETERS)
     assert (reference.task, reference.load) == (task, 1.0)
 
 
-def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot():
+def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot() -> None:
     before = stance_foot(state_at(TIMING.step - 1e-9), swing_to(NEXT), WALK, PARAMETERS)
     after = foot_behind(state_at(0.0), WALK, PARAMETERS)
     assert after.pitch == pytest.approx(before.pitch, abs=1e-6)
 
 
 @given(st.floats(0.0, 1.0))
-def test_the_foot_behind_is_unloaded_in_double_support(fraction):
+def test_the_foot_behind_is_unloaded_in_double_support(fraction: float) -> None:
     reference = foot_behind(state_at(fraction * TIMING.double_support), WALK, PARAMETERS)
     assert reference.load == pytest.approx(1.0 - fraction, abs=1e-9)
 
 
 @given(st.floats(-1.0, 1.5), st.floats(-1.0, 1.5))
-def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_steps(forward, length):
+def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_steps(
+    forward: float, length: float
+) -> None:
     speed = rollover_speed(state_at(0.0), complex(length, 0.2), Command(forward), PARAMETERS)
     assert speed <= forward
     if length <= 0.0:
@@ -69,7 +71,7 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
 
 
 @given(st.floats(-0.2, 0.2))
-def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground):
+def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground: float) -> None:
     foothold = Foothold(NEXT.position, ground)
     end = swinging_foot(state_at(TIMING.step), swing_to(foothold), 1.0, PARAMETERS)
     assert end.height.value == pytest.approx(ground + ANKLE - LANDING_DEPTH)
@@ -78,7 +80,7 @@ def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground):
 
 
 @given(st.floats(0.05, 0.95), st.floats(1.0, 1.8))
-def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progress, rate):
+def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progress: float, rate: float) -> None:
     elapsed, h = TIMING.double_support + progress * TIMING.single_support, 1e-6
     swing = swing_to(Foothold(NEXT.position, 0.1))
     before, here, after = (swinging_foot(state_at(elapsed + rate * d), swing, rate, PARAMETERS) for d in (-h, 0.0, h))

@@ -5,42 +5,42 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.walking.foot_rockers import FootRockers
-from humanwalk.walking.walking_reference import FootTask
+from humanwalk.walking.walking_reference import FootReference, FootTask
 
 ROCKERS = FootRockers()
 DOUBLE_SUPPORT = 0.1
 
 
-def over_ball(since, speed=1.2):
+def over_ball(since: float, speed: float = 1.2) -> FootReference:
     return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, speed)
 
 
-def test_heels_rise_above_a_minimum_forward_speed():
+def test_heels_rise_above_a_minimum_forward_speed() -> None:
     assert ROCKERS.heel_rises(1.0)
     assert not ROCKERS.heel_rises(0.0)
     assert not ROCKERS.heel_rises(-1.0)
 
 
-def test_the_heel_rises_from_flat_to_its_pitch():
+def test_the_heel_rises_from_flat_to_its_pitch() -> None:
     assert over_ball(0.0).pitch[:2] == pytest.approx((0.0, 0.0))
     assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT).pitch[0] == pytest.approx(ROCKERS.pitch)
     assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6).pitch[0] == pytest.approx(0.6 * ROCKERS.pitch)
 
 
 @given(st.floats(0.01, 0.19))
-def test_rates_are_derivatives(since):
+def test_rates_are_derivatives(since: float) -> None:
     h = 1e-5
     before, here, after = (over_ball(since + d).pitch for d in (-h, 0.0, h))
     assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], rel=1e-4)
     assert (after[1] - before[1]) / (2 * h) == pytest.approx(here[2], rel=1e-4)
 
 
-def test_toes_stay_on_the_ground_while_the_foot_pitches():
+def test_toes_stay_on_the_ground_while_the_foot_pitches() -> None:
     reference = over_ball(0.15)
     assert reference.task is FootTask.HEEL_OFF
     assert reference.toes == reference.pitch[:2]
 
 
-def test_a_foot_is_loaded_from_touchdown_on():
+def test_a_foot_is_loaded_from_touchdown_on() -> None:
     landed = ROCKERS.over_heel(0.3)
     assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -25,22 +26,22 @@ frequencies = st.floats(2.0, 5.0)
 segments = st.builds(ZmpSegment, points, points, st.floats(0.0, 1.0))
 
 
-def test_frequency_of_a_pendulum_of_one_meter():
+def test_frequency_of_a_pendulum_of_one_meter() -> None:
     assert natural_frequency(1.0) == pytest.approx(math.sqrt(9.81))
 
 
-def test_at_rest_the_dcm_is_the_center_of_mass():
+def test_at_rest_the_dcm_is_the_center_of_mass() -> None:
     assert divergent_component(0.3 + 0.1j, 0.0, 3.0) == 0.3 + 0.1j
 
 
 @given(st.lists(segments, min_size=1, max_size=3), points, frequencies)
-def test_backward_inverts_forward(path, xi, frequency):
+def test_backward_inverts_forward(path: Any, xi: Any, frequency: Any) -> None:
     path = tuple(path)
     assert backward(path, forward(path, xi, frequency), frequency) == pytest.approx(xi, abs=1e-9)
 
 
 @given(st.builds(ZmpSegment, points, points, st.floats(0.05, 0.6)), points, frequencies)
-def test_forward_solves_the_differential_equation(segment, xi, frequency):
+def test_forward_solves_the_differential_equation(segment: ZmpSegment, xi: complex, frequency: float) -> None:
     steps = 2000
     dt = segment.duration / steps
     y = xi
@@ -53,7 +54,9 @@ def test_forward_solves_the_differential_equation(segment, xi, frequency):
 
 
 @given(points, points, points, st.floats(0.0, 0.5), frequencies)
-def test_the_center_of_mass_converges_to_the_dcm(com, xi, zmp, t, frequency):
+def test_the_center_of_mass_converges_to_the_dcm(
+    com: complex, xi: complex, zmp: complex, t: float, frequency: float
+) -> None:
     h = 1e-5
     before, here, after = (com_after(t + d, com, xi, zmp, frequency) for d in (0.0, h, 2.0 * h))
     dcm = ZmpSegment(zmp, zmp, t + h).forward(xi, frequency)
@@ -62,7 +65,7 @@ def test_the_center_of_mass_converges_to_the_dcm(com, xi, zmp, t, frequency):
 
 
 @given(st.builds(ZmpSegment, points, points, st.floats(0.05, 1.0)), points, frequencies, st.floats(0.0, 1.0))
-def test_a_segment_can_be_cut_anywhere(segment, xi, frequency, fraction):
+def test_a_segment_can_be_cut_anywhere(segment: ZmpSegment, xi: complex, frequency: float, fraction: float) -> None:
     t = fraction * segment.duration
     first = ZmpSegment(segment.start, segment.at(t), t)
     whole = segment.forward(xi, frequency)
@@ -70,7 +73,7 @@ def test_a_segment_can_be_cut_anywhere(segment, xi, frequency, fraction):
 
 
 @pytest.mark.parametrize("t, expected", [(-1.0, 0.0), (0.0, 0.0), (0.5, 1.0), (1.0, 2.0), (9.0, 2.0)])
-def test_the_zero_moment_point_stays_between_the_ends(t, expected):
+def test_the_zero_moment_point_stays_between_the_ends(t: float, expected: float) -> None:
     assert ZmpSegment(0.0, 2.0, 1.0).at(t) == pytest.approx(expected)
 
 
@@ -89,7 +92,7 @@ gaits = st.builds(
 
 
 @given(gaits, frequencies)
-def test_the_periodic_walk_repeats_itself(gait, frequency):
+def test_the_periodic_walk_repeats_itself(gait: PeriodicGait, frequency: float) -> None:
     """The DCM at the end of a step, propagated through the next step, is the end of that step."""
     ends = gait.end_offsets(frequency)
     for stance in SIDES:
@@ -99,7 +102,7 @@ def test_the_periodic_walk_repeats_itself(gait, frequency):
 
 
 @given(gaits, frequencies)
-def test_each_step_begins_where_the_one_before_ended(gait, frequency):
+def test_each_step_begins_where_the_one_before_ended(gait: PeriodicGait, frequency: float) -> None:
     """The zero-moment point does not jump at touchdown."""
     for stance in SIDES:
         end_of_old = gait.segments(stance)[-1].end
@@ -109,7 +112,7 @@ def test_each_step_begins_where_the_one_before_ended(gait, frequency):
 
 
 @given(st.floats(0.1, 0.4), frequencies)
-def test_marching_on_the_spot_is_symmetric(width, frequency):
+def test_marching_on_the_spot_is_symmetric(width: float, frequency: float) -> None:
     gait = PeriodicGait(PerStance(-1j * width, 1j * width), 0.0, 0.0, 0.1, 0.4)
     ends = gait.end_offsets(frequency)
     assert ends.left == pytest.approx(ends.right.conjugate(), abs=1e-12)

@@ -1,7 +1,9 @@
 """Motions: consistent derivatives; a planar motion reaches a goal that may move in time, with bounded jerk."""
 
 import cmath
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -15,31 +17,31 @@ motions = st.builds(ScalarMotion, numbers, numbers, numbers)
 
 
 @given(motions, motions)
-def test_the_sum_adds_values_rates_and_accelerations(a, b):
+def test_the_sum_adds_values_rates_and_accelerations(a: ScalarMotion, b: ScalarMotion) -> None:
     assert a.plus(b) == pytest.approx([x + y for x, y in zip(a, b, strict=True)])
 
 
 @given(numbers, numbers, st.floats(0.1, 2.0), st.floats(0.1, 3.0))
-def test_a_faster_clock_shortens_a_blend(start, end, time, factor):
+def test_a_faster_clock_shortens_a_blend(start: float, end: float, time: float, factor: float) -> None:
     slow = blend(start, end, factor * time, 2.0).time_scaled(factor)
     assert slow == pytest.approx(blend(start, end, time, 2.0 / factor), abs=1e-6)
 
 
 @given(numbers, numbers, st.floats(0.1, 2.0))
-def test_a_blend_rests_before_its_start_and_after_its_end(start, end, duration):
+def test_a_blend_rests_before_its_start_and_after_its_end(start: float, end: float, duration: float) -> None:
     assert blend(start, end, -0.1, duration) == pytest.approx((start, 0.0, 0.0), abs=1e-9)
     assert blend(start, end, duration + 0.1, duration) == pytest.approx((end, 0.0, 0.0), abs=1e-9)
 
 
 @given(numbers, numbers, st.floats(0.01, 0.99))
-def test_rates_of_a_blend_are_derivatives(start, end, time):
+def test_rates_of_a_blend_are_derivatives(start: float, end: float, time: float) -> None:
     h = 1e-5
     before, here, after = (blend(start, end, time + d, 1.0) for d in (-h, 0.0, h))
     assert (after.value - before.value) / (2 * h) == pytest.approx(here.rate, abs=1e-4)
     assert (after.rate - before.rate) / (2 * h) == pytest.approx(here.acceleration, abs=1e-4)
 
 
-def swing_to(goal_at, duration, jerk_limit=1e9):
+def swing_to(goal_at: Callable[..., Any], duration: float, jerk_limit: float = 1e9) -> list[PlanarMotion]:
     motion, t = PlanarMotion(0.0), 0.0
     path = [motion]
     while t < duration - 0.5 * DT:
@@ -50,32 +52,32 @@ def swing_to(goal_at, duration, jerk_limit=1e9):
 
 
 @given(st.floats(-0.8, 0.8), st.floats(-0.3, 0.3))
-def test_it_comes_to_rest_at_the_foothold(x, y):
+def test_it_comes_to_rest_at_the_foothold(x: float, y: float) -> None:
     goal = complex(x, y)
     end = swing_to(lambda t: goal, 0.4)[-1]
     assert end.position == pytest.approx(goal, abs=0.01)
     assert abs(end.velocity) < 0.5
 
 
-def test_a_foothold_that_moves_is_reached_too():
+def test_a_foothold_that_moves_is_reached_too() -> None:
     end = swing_to(lambda t: 0.6 if t < 0.2 else 0.7 + 0.05j, 0.42)[-1]
     assert end.position == pytest.approx(0.7 + 0.05j, abs=0.02)
 
 
-def test_velocity_is_the_derivative_of_position():
+def test_velocity_is_the_derivative_of_position() -> None:
     path = swing_to(lambda t: 0.7, 0.4)
     for before, after in pairwise(path):
         mean = 0.5 * (before.velocity + after.velocity)
         assert (after.position - before.position) / DT == pytest.approx(mean, abs=0.01)
 
 
-def test_jerk_is_bounded():
+def test_jerk_is_bounded() -> None:
     path = swing_to(lambda t: 2.0, 0.4, jerk_limit=1000.0)
     for before, after in pairwise(path):
         assert abs(after.acceleration - before.acceleration) <= 1000.0 * DT + 1e-9
 
 
-def test_it_lands_with_the_desired_speed_and_deceleration():
+def test_it_lands_with_the_desired_speed_and_deceleration() -> None:
     goal, motion, t = PlanarMotion(0.7, 0.35, -30.0), PlanarMotion(0.0, 0.7, 8.0), 0.0
     # In the last two periods the quintic ends later than the swing.
     while t < 0.4 - 2.5 * DT:
@@ -86,7 +88,7 @@ def test_it_lands_with_the_desired_speed_and_deceleration():
 
 
 @given(st.floats(-3.1, 3.1))
-def test_a_motion_with_the_sideways_of_another_has_both(heading):
+def test_a_motion_with_the_sideways_of_another_has_both(heading: float) -> None:
     u = cmath.exp(1j * heading)
     along, across = PlanarMotion(1.0 + 2.0j, 3.0, 4.0j), PlanarMotion(-1.0 + 0.5j, 1.0j, 2.0)
     mixed = along.with_sideways_of(across, u)

@@ -1,6 +1,7 @@
 """Transitions between standing, weight shift, double support and single support."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -8,6 +9,7 @@ from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import STOP_SPEED, PhaseTransitions
+from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
@@ -18,7 +20,7 @@ WALK, STOP = Command(0.5), Command()
 PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1))
 
 
-def foot(position, force=350.0, **changes):
+def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
     values = dict(velocity=0j, height=ANKLE, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0)
     return FootState(position=position, force=force, **(values | changes))
 
@@ -26,30 +28,30 @@ def foot(position, force=350.0, **changes):
 BODY = BodyState(0j, 0j, 0.97, right=foot(-0.1j), left=foot(0.1j))
 
 
-def in_single_support(progress=0.5, steps=1):
+def in_single_support(progress: float = 0.5, steps: int = 1) -> PlannerState:
     state = PHASES.start(BODY, 0.0)
     state = PHASES.advance(state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=TIMING.weight_shift), BODY, WALK)
     return state._replace(elapsed=TIMING.double_support + progress * TIMING.single_support, steps=steps)
 
 
-def landed_at(position, force=350.0):
+def landed_at(position: complex, force: float = 350.0) -> BodyState:
     return replace(BODY, right=foot(position, force))
 
 
-def test_it_starts_in_standing_on_the_foot_that_does_not_swing_first():
+def test_it_starts_in_standing_on_the_foot_that_does_not_swing_first() -> None:
     state = PHASES.start(BODY, 0.3)
     assert (state.phase, state.stance, state.heading, state.steps) == (Phase.STAND, "Left", 0.3, 0)
     assert state.height == pytest.approx(BODY.com_height)
 
 
 @pytest.mark.parametrize("command", [WALK, Command(-0.2), Command(0.0, 0.2), Command(0.0, 0.0, 0.3)])
-def test_any_command_above_the_stop_speed_begins_a_weight_shift(command):
+def test_any_command_above_the_stop_speed_begins_a_weight_shift(command: Command) -> None:
     state = PHASES.start(BODY, 0.0)
     assert PHASES.advance(state, BODY, command).phase is Phase.WEIGHT_SHIFT
     assert PHASES.advance(state, BODY, Command(0.9 * STOP_SPEED)).phase is Phase.STAND
 
 
-def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured():
+def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured() -> None:
     pitched = replace(BODY, right=foot(0.01 - 0.1j, height=0.1, height_rate=0.2, pitch=0.3, velocity=0.4 + 0j))
     state = PHASES.start(BODY, 0.0)._replace(phase=Phase.WEIGHT_SHIFT, elapsed=TIMING.weight_shift)
     state = PHASES.advance(state, pitched, WALK)
@@ -59,13 +61,13 @@ def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured():
     assert (height.value, height.rate, pitch.value) == pytest.approx((0.1, 0.2, 0.3))
 
 
-def test_early_contact_ends_the_swing_only_near_its_end():
+def test_early_contact_ends_the_swing_only_near_its_end() -> None:
     body = landed_at(0.5 - 0.1j)
     assert PHASES.advance(in_single_support(0.5), body, WALK).phase is Phase.SINGLE_SUPPORT
     assert PHASES.advance(in_single_support(0.95), body, WALK).phase is Phase.DOUBLE_SUPPORT
 
 
-def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured():
+def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured() -> None:
     before = in_single_support(1.01)
     state = PHASES.advance(before, landed_at(0.5 - 0.1j), WALK)
     assert (state.stance, state.elapsed, state.steps, state.swing) == ("Right", 0.0, 2, None)
@@ -74,13 +76,13 @@ def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured():
     assert state.support_start == before.left.ground
 
 
-def test_the_last_step_ends_in_standing():
+def test_the_last_step_ends_in_standing() -> None:
     state = PHASES.advance(in_single_support(1.01), landed_at(-0.1j), STOP)
     assert (state.phase, state.steps) == (Phase.STAND, 0)
 
 
 @pytest.mark.parametrize("force, is_moved", [(0.5 * TOUCHDOWN_FORCE, True), (2.0 * TOUCHDOWN_FORCE, False)])
-def test_a_stance_foot_without_load_after_touchdown_stands_where_it_is_measured(force, is_moved):
+def test_a_stance_foot_without_load_after_touchdown_stands_where_it_is_measured(force: float, is_moved: bool) -> None:
     state = PHASES.advance(in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)._replace(elapsed=0.02)
     later = PHASES.advance(state, landed_at(0.55 - 0.1j, force), WALK)
     assert later.right.position == (0.55 - 0.1j if is_moved else 0.5 - 0.1j)

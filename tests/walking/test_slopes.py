@@ -10,7 +10,7 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.mark.parametrize("slope, cross_slope", [(0.05, 0.0), (-0.05, 0.0), (0.0, 0.05)])
-def test_it_walks_on_a_slope_of_three_degrees_at_the_height_of_level_walking(slope, cross_slope):
+def test_it_walks_on_a_slope_of_three_degrees_at_the_height_of_level_walking(slope: float, cross_slope: float) -> None:
     terrain = f"{{plane: {{slope: {slope}, cross_slope: {cross_slope}}}}}"
     outcome = simulate(load_scenario("walk", {"duration": "6", "terrain": terrain}))
     assert outcome.end == "completed"

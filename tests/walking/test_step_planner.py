@@ -2,8 +2,10 @@
 
 import cmath
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,13 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from humanwalk.body.limbs import other_side
+from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import height_at
 from humanwalk.walking.command import Command
+from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.swing_foot import LANDING_DEPTH
-from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase
+from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase, WalkingReference
 
 PERIOD = 0.004
 ANKLE = 0.068
@@ -29,29 +34,31 @@ LEVEL = Plane()
 class Stairs:
     """Stairs along x; only their heights are defined."""
 
-    def __init__(self, rise, tread=0.3, base=0.0):
+    def __init__(self, rise: float, tread: float = 0.3, base: float = 0.0) -> None:
         self.rise, self.tread, self.base = rise, tread, base
 
-    def height(self, xy):
+    def height(self, xy: Array) -> Any:
         return self.base + self.rise * np.floor(xy[..., 0] / self.tread)
 
 
-def planner(terrain=LEVEL, period=PERIOD):
+def planner(terrain: Any = LEVEL, period: float = PERIOD) -> StepPlanner:
     return StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period, terrain)
 
 
-def foot(position, force=350.0, **changes):
+def foot(position: Any, force: float = 350.0, **changes: Any) -> FootState:
     values = dict(
         position=position, velocity=0j, height=ANKLE, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=force
     )
     return FootState(**(values | changes))
 
 
-def standing():
+def standing() -> BodyState:
     return BodyState(0.03 + 0j, 0j, 0.96, foot(-0.0875j), foot(0.0875j))
 
 
-def pendulum_walk(plan, command, duration, push=None):
+def pendulum_walk(
+    plan: StepPlanner, command: Callable[..., Any], duration: float, push: tuple[float, complex] | None = None
+) -> Iterator[tuple[float, PlannerState, WalkingReference, BodyState]]:
     """A linear inverted pendulum whose feet follow their references; yields time, state, reference and body."""
     body = standing()
     state = plan.start(body)
@@ -73,17 +80,17 @@ def pendulum_walk(plan, command, duration, push=None):
         body = BodyState(body.com + PERIOD * velocity, velocity, 0.93, feet["Right"], feet["Left"])
 
 
-def walk_at(forward, sideways=0.0, turn=0.0):
+def walk_at(forward: float, sideways: float = 0.0, turn: float = 0.0) -> Callable[..., Any]:
     return lambda time: Command(forward, sideways, turn) if time > 0.2 else Command()
 
 
-def test_it_stands_while_nothing_is_commanded():
+def test_it_stands_while_nothing_is_commanded() -> None:
     for _, state, reference, _ in pendulum_walk(planner(), lambda time: Command(), 1.0):
         assert state.phase is Phase.STAND
         assert {reference.right.task, reference.left.task} == {FootTask.FLAT}
 
 
-def test_phases_follow_each_other_and_sides_alternate():
+def test_phases_follow_each_other_and_sides_alternate() -> None:
     previous, stances = Phase.STAND, []
     follows = {
         Phase.STAND: {Phase.WEIGHT_SHIFT},
@@ -102,14 +109,14 @@ def test_phases_follow_each_other_and_sides_alternate():
     assert all(later == other_side(earlier) for earlier, later in pairwise(stances))
 
 
-def test_the_stance_foot_never_swings():
+def test_the_stance_foot_never_swings() -> None:
     for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.8), 4.0):
         assert reference.foot(state.stance).task is not FootTask.SWING
         assert reference.foot(state.stance).load == 1.0
 
 
 @pytest.mark.parametrize("speed", [complex(0.4), complex(1.0), complex(-0.3), complex(0.3, 0.1)])
-def test_a_perfect_pendulum_walks_as_commanded(speed):
+def test_a_perfect_pendulum_walks_as_commanded(speed: complex) -> None:
     middle = [b.com for t, _, _, b in pendulum_walk(planner(), walk_at(speed.real, speed.imag), 12.0) if t > 7.8]
     step = PARAMETERS.timing.step
     window = round(6 * step / PERIOD)
@@ -117,34 +124,34 @@ def test_a_perfect_pendulum_walks_as_commanded(speed):
     assert (middle[window] - middle[0]).imag / (window * PERIOD) == pytest.approx(speed.imag, abs=0.03)
 
 
-def test_a_turn_turns_the_feet_and_the_walk():
+def test_a_turn_turns_the_feet_and_the_walk() -> None:
     *_, (_, state, _, body) = pendulum_walk(planner(), walk_at(0.5, turn=0.3), 8.0)
     assert state.heading > 1.0
     assert cmath.phase(body.com_velocity) == pytest.approx(state.heading, abs=0.6)
 
 
-def test_it_stays_on_the_path_around_a_corner():
+def test_it_stays_on_the_path_around_a_corner() -> None:
     command = lambda time: Command(0.4, 0.0, 0.4 if 3.0 < time < 6.9 else 0.0) if time > 0.2 else Command()  # noqa: E731
     for _, state, _, _ in pendulum_walk(planner(), command, 10.0):
         assert abs(state.path.nearest(state.midpoint, Command(0.4)).position - state.midpoint) < 0.03
 
 
-def test_the_pelvis_turns_without_a_jump():
+def test_the_pelvis_turns_without_a_jump() -> None:
     yaws = [ref.pelvis_yaw for time, _, ref, _ in pendulum_walk(planner(), walk_at(0.4, turn=0.4), 8.0) if time > 4.0]
     assert max(abs(later - earlier) for earlier, later in pairwise(yaws)) < 0.05
 
 
 @settings(max_examples=10)
 @given(st.floats(0.02, 0.15), st.floats(-math.pi, math.pi))
-def test_steps_stop_the_divergence_after_a_push(size, direction):
+def test_steps_stop_the_divergence_after_a_push(size: float, direction: float) -> None:
     push = (3.0, cmath.rect(size, direction))
     *_, (_, state, reference, body) = pendulum_walk(planner(), walk_at(0.5), 7.0, push)
     assert abs(body.com - state.midpoint) < 0.6
     assert abs(reference.dcm - reference.dcm_reference) < 0.05
 
 
-def test_a_push_forward_lengthens_the_next_step():
-    def foothold(push):
+def test_a_push_forward_lengthens_the_next_step() -> None:
+    def foothold(push: tuple[float, complex] | None) -> float:
         for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.5), 4.2, push):
             if state.phase is Phase.SINGLE_SUPPORT:
                 last = reference.foothold - state.stance_foot.position
@@ -153,7 +160,7 @@ def test_a_push_forward_lengthens_the_next_step():
     assert foothold((4.1, 0.1 + 0j)) > foothold(None)
 
 
-def test_footholds_keep_the_minimum_step_width():
+def test_footholds_keep_the_minimum_step_width() -> None:
     for push in (0.5j, -0.5j):
         for _, state, reference, _ in pendulum_walk(planner(), walk_at(0.3), 5.0, (3.0, push)):
             if reference.phase is Phase.SINGLE_SUPPORT and reference.phase_time > 0.3:
@@ -162,27 +169,27 @@ def test_footholds_keep_the_minimum_step_width():
                 assert outward * place.imag >= PARAMETERS.placement.min_step_width(place.real) - 0.02
 
 
-def test_a_wide_step_lowers_the_center_of_mass():
-    def lowest(push):
+def test_a_wide_step_lowers_the_center_of_mass() -> None:
+    def lowest(push: tuple[float, complex] | None) -> float:
         return min(r.com_height[0] for t, _, r, _ in pendulum_walk(planner(), walk_at(0.5), 5.0, push) if t > 3.0)
 
     assert min(lowest((3.5, 0.8j)), lowest((3.5, -0.8j))) < lowest(None) - 0.01
 
 
-def test_the_path_begins_along_the_given_heading_not_along_the_feet():
+def test_the_path_begins_along_the_given_heading_not_along_the_feet() -> None:
     turned = replace(standing(), right=foot(-0.0875j, yaw=0.1), left=foot(0.0875j, yaw=0.06))
     assert planner().start(turned).heading == 0.0
     assert planner().start(turned, heading=0.3).heading == 0.3
 
 
-def test_it_stops_and_stands_with_its_feet_side_by_side():
+def test_it_stops_and_stands_with_its_feet_side_by_side() -> None:
     command = lambda time: Command(0.4 if 0.2 < time < 4.0 else 0.0)  # noqa: E731
     *_, (_, state, _, body) = pendulum_walk(planner(), command, 8.0)
     assert state.phase is Phase.STAND
     assert abs(body.com_velocity) < 0.02
 
 
-def test_the_zero_moment_point_stays_over_the_stance_foot():
+def test_the_zero_moment_point_stays_over_the_stance_foot() -> None:
     support = PARAMETERS.support
     for _, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.0, (3.0, 0.3 + 0.2j)):
         if reference.phase is Phase.SINGLE_SUPPORT and state.phase is Phase.SINGLE_SUPPORT:
@@ -191,8 +198,8 @@ def test_the_zero_moment_point_stays_over_the_stance_foot():
             assert abs(offset.imag) <= support.half_width + 1e-9
 
 
-def test_step_durations_do_not_depend_on_the_control_period():
-    def landings(period):
+def test_step_durations_do_not_depend_on_the_control_period() -> None:
+    def landings(period: float) -> list[float]:
         plan = planner(period=period)
         body, state, times = standing(), None, []
         state = plan.start(body)
@@ -208,7 +215,7 @@ def test_step_durations_do_not_depend_on_the_control_period():
     assert len(coarse) == len(fine) > 3
 
 
-def test_the_pitch_at_toe_off_is_smaller_after_a_short_step():
+def test_the_pitch_at_toe_off_is_smaller_after_a_short_step() -> None:
     pitches = {}
     for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.5 + 0j)):
         behind = reference.foot(state.swing_side)
@@ -220,7 +227,7 @@ def test_the_pitch_at_toe_off_is_smaller_after_a_short_step():
     assert max(pitches.values()) <= PARAMETERS.rockers.pitch
 
 
-def test_in_a_backward_step_the_feet_leave_the_ground_flat():
+def test_in_a_backward_step_the_feet_leave_the_ground_flat() -> None:
     for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.2, push=(4.0, -1.2 + 0j)):
         behind = (state.old_foot.position - state.stance_foot.position).real < 0.0
         if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and not behind:
@@ -230,28 +237,28 @@ def test_in_a_backward_step_the_feet_leave_the_ground_flat():
         pytest.fail("no step backward")
 
 
-def test_a_stance_foot_that_is_still_airborne_stands_where_it_lands():
+def test_a_stance_foot_that_is_still_airborne_stands_where_it_lands() -> None:
     plan, command = planner(), walk_at(0.5)
     walked = pendulum_walk(plan, command, 5.0)
     time, state, _, body = next(w for w in walked if w[0] > 3.0 and w[1].phase is Phase.DOUBLE_SUPPORT)
     drifted = body.foot(state.stance).position + 0.05j
 
-    def stance_after(force):
+    def stance_after(force: float) -> complex:
         feet = {state.stance.lower(): foot(drifted, force)}
-        later, _ = plan.update(state, replace(body, **feet), command(time))
+        later, _ = plan.update(state, replace(body, **feet), command(time))  # type: ignore[arg-type]
         return later.foot(state.stance).position
 
     assert stance_after(0.0) == drifted
     assert stance_after(500.0) == state.stance_foot.position
 
 
-def raised(body, height):
+def raised(body: Any, height: Any) -> BodyState:
     feet = {side: replace(body.foot(side.title()), height=ANKLE + height) for side in ("right", "left")}
     return replace(body, com_height=body.com_height + height, **feet)
 
 
 @pytest.mark.parametrize("height", [-3.0, 40.0])
-def test_on_higher_ground_every_height_is_greater_by_that(height):
+def test_on_higher_ground_every_height_is_greater_by_that(height: float) -> None:
     low, high = planner(), planner(Stairs(0.0, base=height))
     state = high.start(raised(standing(), height))
     for time, _, reference, body in pendulum_walk(low, walk_at(0.8), 4.0):
@@ -266,36 +273,36 @@ def test_on_higher_ground_every_height_is_greater_by_that(height):
         assert above.zmp == pytest.approx(reference.zmp, abs=1e-9)
 
 
-def lifted(height, by):
+def lifted(height: ScalarMotion, by: float) -> tuple[float, float, float]:
     return (height[0] + by, *height[1:])
 
 
 @pytest.mark.parametrize("rise", [0.05, -0.05])
-def test_a_swing_ends_at_the_height_of_its_foothold(rise):
+def test_a_swing_ends_at_the_height_of_its_foothold(rise: float) -> None:
     stairs, swings = Stairs(rise), 0
     walk = list(pendulum_walk(planner(stairs), walk_at(0.5), 6.0))
     for (_, state, reference, _), (_, later, _, _) in pairwise(walk):
         if state.phase is Phase.SINGLE_SUPPORT and later.phase is Phase.DOUBLE_SUPPORT:
             ankle = reference.foot(state.swing_side).height[0]
-            goal = height_at(stairs, reference.foothold) + ANKLE - LANDING_DEPTH
+            goal = height_at(stairs, reference.foothold) + ANKLE - LANDING_DEPTH  # type: ignore[arg-type]
             assert ankle == pytest.approx(goal, abs=0.01)
             swings += 1
     assert swings > 5
 
 
 @pytest.mark.parametrize("rise", [0.05, -0.05])
-def test_the_ground_under_the_support_goes_from_foot_to_foot_without_a_jump(rise):
+def test_the_ground_under_the_support_goes_from_foot_to_foot_without_a_jump(rise: float) -> None:
     stairs = Stairs(rise)
     walk = [w for w in pendulum_walk(planner(stairs), lambda time: Command(0.5 if 0.2 < time < 5.0 else 0.0), 8.0)]
     grounds = [reference.ground_height for _, _, reference, _ in walk]
     assert max(abs(later - earlier) for earlier, later in pairwise(grounds)) < 0.01
     for _, state, reference, _ in walk:
         if reference.phase is Phase.SINGLE_SUPPORT:
-            assert reference.ground_height == pytest.approx(height_at(stairs, state.stance_foot.position))
+            assert reference.ground_height == pytest.approx(height_at(stairs, state.stance_foot.position))  # type: ignore[arg-type]
     assert abs(grounds[-1]) >= 4 * abs(rise)
 
 
-def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stairs():
+def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stairs() -> None:
     walk = pendulum_walk(planner(Stairs(0.05)), walk_at(0.5), 6.0)
     references = [reference for _, _, reference, _ in walk]
     for before, after in pairwise(references):
@@ -305,11 +312,11 @@ def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stair
             assert rate == pytest.approx(mean_rate, abs=0.02)
 
 
-def test_the_terrain_is_evaluated_at_most_once_per_update_between_touchdowns():
+def test_the_terrain_is_evaluated_at_most_once_per_update_between_touchdowns() -> None:
     class Counting(Stairs):
         calls = 0
 
-        def height(self, xy):
+        def height(self, xy: Array) -> float:
             Counting.calls += 1
             return super().height(xy)
 

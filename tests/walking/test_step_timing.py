@@ -10,16 +10,16 @@ TIMING = StepTiming()
 LOADED, UNLOADED = 2.0 * TOUCHDOWN_FORCE, 0.5 * TOUCHDOWN_FORCE
 
 
-def at_progress(progress):
+def at_progress(progress: float) -> float:
     return TIMING.double_support + progress * TIMING.single_support
 
 
-def test_double_and_single_support_make_the_step():
+def test_double_and_single_support_make_the_step() -> None:
     assert TIMING.double_support + TIMING.single_support == pytest.approx(TIMING.step)
 
 
 @given(st.floats(-0.5, 1.5))
-def test_the_swing_progresses_from_lift_off_to_touchdown(progress):
+def test_the_swing_progresses_from_lift_off_to_touchdown(progress: float) -> None:
     assert TIMING.swing_progress(at_progress(progress)) == pytest.approx(progress, abs=1e-12)
 
 
@@ -33,12 +33,12 @@ def test_the_swing_progresses_from_lift_off_to_touchdown(progress):
         (1.01, UNLOADED, True),
     ],
 )
-def test_a_swing_ends_by_contact_late_in_the_swing_or_by_time(progress, force, landed):
+def test_a_swing_ends_by_contact_late_in_the_swing_or_by_time(progress: float, force: float, landed: bool) -> None:
     assert TIMING.has_landed(at_progress(progress), force) is landed
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.0, 3.0))
-def test_the_clock_runs_faster_in_proportion_up_to_its_limit(excess, limit):
+def test_the_clock_runs_faster_in_proportion_up_to_its_limit(excess: float, limit: float) -> None:
     rate = TIMING.phase_rate(excess, limit)
     assert 1.0 <= rate <= 1.0 + limit
     if TIMING.phase_rate_gain * excess <= limit:

@@ -10,11 +10,11 @@ from humanwalk.walking.walking_reference import FootState
 DURATION = 0.42
 
 
-def toe_off(height=0.12, height_rate=0.3, pitch=0.6, pitch_rate=-2.0):
+def toe_off(height: float = 0.12, height_rate: float = 0.3, pitch: float = 0.6, pitch_rate: float = -2.0) -> FootState:
     return FootState(0j, 0j, height, height_rate, yaw=0.0, pitch=pitch, pitch_rate=pitch_rate, force=0.0)
 
 
-def test_the_pitch_at_touchdown_grows_with_the_forward_speed_up_to_a_limit():
+def test_the_pitch_at_touchdown_grows_with_the_forward_speed_up_to_a_limit() -> None:
     law = SwingParameters()
     assert law.touchdown_pitch(-0.5) == law.touchdown_pitch(0.0) == 0.0
     assert law.touchdown_pitch(1.4) == pytest.approx(2.0 * law.touchdown_pitch(0.7))
@@ -22,7 +22,7 @@ def test_the_pitch_at_touchdown_grows_with_the_forward_speed_up_to_a_limit():
 
 
 @given(st.complex_numbers(max_magnitude=2.0))
-def test_it_accelerates_along_the_walk_with_the_square_of_its_speed(pace):
+def test_it_accelerates_along_the_walk_with_the_square_of_its_speed(pace: complex) -> None:
     law = SwingParameters()
     assert law.toe_off_acceleration(2.0 * pace) == pytest.approx(4.0 * law.toe_off_acceleration(pace))
     assert (law.toe_off_acceleration(pace) * pace.conjugate()).real == pytest.approx(
@@ -31,7 +31,7 @@ def test_it_accelerates_along_the_walk_with_the_square_of_its_speed(pace):
 
 
 @given(st.complex_numbers(max_magnitude=1.0), st.complex_numbers(max_magnitude=2.0))
-def test_it_lands_on_the_foothold_slower_than_the_walk_and_decelerating(foothold, velocity):
+def test_it_lands_on_the_foothold_slower_than_the_walk_and_decelerating(foothold: complex, velocity: complex) -> None:
     landing = SwingParameters().landing(foothold, velocity)
     assert landing.position == foothold
     assert abs(landing.velocity) <= abs(velocity)
@@ -39,29 +39,29 @@ def test_it_lands_on_the_foothold_slower_than_the_walk_and_decelerating(foothold
 
 
 @pytest.fixture
-def profile():
+def profile() -> SwingProfile:
     return SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters())
 
 
-def test_it_continues_the_motion_at_toe_off(profile):
+def test_it_continues_the_motion_at_toe_off(profile: SwingProfile) -> None:
     height, pitch = (motion.time_scaled(1.0 / DURATION) for motion in profile.at(0.0))
     assert (height.value, pitch.value) == pytest.approx((0.12, 0.6))
     assert (height.rate, pitch.rate) == pytest.approx((0.3, -2.0))
 
 
-def test_it_lands_on_the_heel_with_the_landing_speed(profile):
+def test_it_lands_on_the_heel_with_the_landing_speed(profile: SwingProfile) -> None:
     (height, pitch), parameters = profile.at(1.0), SwingParameters()
     assert height.value == pytest.approx(0.068 - LANDING_DEPTH)
     assert pitch.value == pytest.approx(-0.25)
     assert height.rate / DURATION == pytest.approx(-parameters.landing_sink_rate)
 
 
-def test_it_clears_the_ground_in_between(profile):
+def test_it_clears_the_ground_in_between(profile: SwingProfile) -> None:
     assert all(profile.at(s / 100)[0].value > 0.068 for s in range(95))
 
 
 @given(st.floats(0.0, 0.1))
-def test_a_foot_that_leaves_the_ground_flat_has_clearance(raised):
+def test_a_foot_that_leaves_the_ground_flat_has_clearance(raised: float) -> None:
     parameters, ground = SwingParameters(), 0.068
     profile = SwingProfile.from_toe_off(toe_off(ground + raised, 0.0, 0.0, 0.0), ground, 0.25, DURATION, parameters)
     highest = max(profile.at(s / 100)[0].value for s in range(100)) - ground
@@ -69,7 +69,7 @@ def test_a_foot_that_leaves_the_ground_flat_has_clearance(raised):
 
 
 @given(st.integers(0, 3), st.floats(0.01, 0.99))
-def test_rates_are_derivatives_within_each_quarter(quarter, fraction):
+def test_rates_are_derivatives_within_each_quarter(quarter: int, fraction: float) -> None:
     profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters())
     progress, h = 0.25 * (quarter + fraction), 1e-6
     for before, here, after in zip(*(profile.at(progress + d) for d in (-h, 0.0, h)), strict=True):
@@ -78,6 +78,6 @@ def test_rates_are_derivatives_within_each_quarter(quarter, fraction):
 
 
 @pytest.mark.parametrize("knot", [0.25, 0.5, 0.75])
-def test_height_and_pitch_have_no_jump_in_their_rates(profile, knot):
+def test_height_and_pitch_have_no_jump_in_their_rates(profile: SwingProfile, knot: float) -> None:
     for before, after in zip(profile.at(knot - 1e-9), profile.at(knot + 1e-9), strict=True):
         assert before[:2] == pytest.approx(after[:2], abs=1e-6)

@@ -2,12 +2,14 @@
 
 import cmath
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body import SIDES
+from humanwalk.sides import Side
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -21,47 +23,55 @@ speeds = st.floats(-0.5, 1.5)
 sideways = st.floats(-0.3, 0.3)
 
 
-def state_at(elapsed=0.0, phase=Phase.DOUBLE_SUPPORT, stance="Left", heading=0.0, **changes):
+def state_at(
+    elapsed: Any = 0.0,
+    phase: Any = Phase.DOUBLE_SUPPORT,
+    stance: Any = "Left",
+    heading: Any = 0.0,
+    **changes: Any,
+) -> PlannerState:
     u = cmath.exp(1j * heading)
     feet = {"right": Foothold(-0.1j * u, 0.0), "left": Foothold((0.5 + 0.1j) * u, 0.0)}
     path = CommandedPath.begin(0.0, heading)
-    state = PlannerState(phase, elapsed, stance, **feet, support_start=0.0, heading=heading, old_heading=heading,
+    state = PlannerState(phase, elapsed, stance, **feet, support_start=0.0, heading=heading, old_heading=heading,  # type: ignore[arg-type]
                          path=path, height=0.9)  # fmt: skip
     return state._replace(**changes)
 
 
 @given(speeds, sideways)
-def test_two_steps_advance_by_the_commanded_velocity(forward, left):
+def test_two_steps_advance_by_the_commanded_velocity(forward: float, left: float) -> None:
     gait = desired_gait(state_at(), Command(forward, left), PARAMETERS)
     stride = gait.displacement.left + gait.displacement.right
     assert stride == pytest.approx(2.0 * TIMING.step * complex(forward, left))
 
 
 @given(speeds, sideways)
-def test_every_step_has_at_least_the_minimum_width(forward, left):
+def test_every_step_has_at_least_the_minimum_width(forward: float, left: float) -> None:
     gait = desired_gait(state_at(), Command(forward, left), PARAMETERS)
     assert -gait.displacement.left.imag >= PLACEMENT.min_width - 1e-9
     assert gait.displacement.right.imag >= PLACEMENT.min_width - 1e-9
 
 
 @given(st.floats(-0.5, 0.5))
-def test_in_a_turn_the_heading_changes_at_the_turn_rate_of_the_path(turn):
+def test_in_a_turn_the_heading_changes_at_the_turn_rate_of_the_path(turn: float) -> None:
     assert desired_gait(state_at(turn=turn), Command(0.5), PARAMETERS).turn == pytest.approx(turn * TIMING.step)
 
 
-def test_the_velocity_towards_the_path_adds_to_the_command():
+def test_the_velocity_towards_the_path_adds_to_the_command() -> None:
     corrected = desired_gait(state_at(path_correction=0.1 + 0.05j), Command(0.5), PARAMETERS)
     commanded = desired_gait(state_at(), Command(0.6, 0.05), PARAMETERS)
     assert corrected.displacement == pytest.approx(commanded.displacement)
 
 
-def test_walking_backward_the_zero_moment_point_does_not_roll():
+def test_walking_backward_the_zero_moment_point_does_not_roll() -> None:
     assert desired_gait(state_at(), Command(-0.5), PARAMETERS).roll == 0.0
     assert desired_gait(state_at(), Command(0.5), PARAMETERS).roll.real > 0.0
 
 
 @given(st.sampled_from(SIDES), st.floats(0.0, 0.99), st.floats(-3.0, 3.0))
-def test_the_remaining_segments_last_to_the_end_of_the_step_and_are_connected(stance, fraction, heading):
+def test_the_remaining_segments_last_to_the_end_of_the_step_and_are_connected(
+    stance: Side, fraction: float, heading: float
+) -> None:
     elapsed = fraction * TIMING.step
     phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
     state = state_at(elapsed, phase, stance, heading)
