@@ -9,7 +9,7 @@ side and mirrored.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from humanwalk.body.shapes import Box, Cylinder
 from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
@@ -39,8 +39,9 @@ VERT_SHARE = "a quarter of 'vert' 2.58 kg, read as the four thoracic groups toge
 # Sources of ranges of motion.
 AAOS = "AAOS, The Clinical Measurement of Joint Motion"
 AAOS_SHARE = "equal share of the AAOS thoracolumbar range"
-OUR_ESTIMATE = "our estimate"
-LOADED_ANKLE = (
+OURS = "our estimate"
+AAOS_ADDUCTION = f"{AAOS}; adduction 30 is {OURS}"
+LUNGE = (
     "AAOS down; up 35 and not AAOS' 20, which is measured unloaded: the thesis' level foot takes 28 degrees in stance, "
     "and the weight-bearing lunge test finds 35 to 45 (Bennell et al. 1998, from memory)"
 )
@@ -50,7 +51,7 @@ LEG_STRENGTH = (
     "rounded human strength, our choice; order of magnitude from memory of the maximum voluntary "
     "torques at hip, knee and ankle in Anderson et al. (2007), J Biomech 40:3105-3113"
 )
-OUR_STRENGTH = "plausible human strength, our choice"
+STRENGTH = "plausible human strength, our choice"
 
 X: Vector3 = (1.0, 0.0, 0.0)
 Y: Vector3 = (0.0, 1.0, 0.0)
@@ -59,313 +60,132 @@ MINUS_X: Vector3 = (-1.0, 0.0, 0.0)
 MINUS_Y: Vector3 = (0.0, -1.0, 0.0)
 HERE: Vector3 = (0.0, 0.0, 0.0)
 
-Branch = tuple[Segment, Joint | Weld]
+# A joint by name, motion, axis, origin in the parent [m], range [deg] with source, and torque limit [N m] with source.
+JointRow = tuple[str, str, Vector3, Vector3, tuple[float, float, str], tuple[float, str]]
 
+PELVIS = Segment("Pelvis", Box(0.17291, 0.322739, 0.211809), 7.56, (0, 0, 0.036), TABLE_3_1)
 
-class _Range(NamedTuple):
-    low_deg: float
-    high_deg: float
-    source: str
+CONNECTOR_ACROSS = Cylinder(0.0285715, 0.0503935, "y")
+CONNECTOR_ALONG = Cylinder(0.0285715, 0.0503935, "x")
 
+# Hip (flexion, abduction, rotation), knee, ankle (three), mid-foot, toes.
+RIGHT_LEG = (
+    Segment("RightLeg_HipPart1", CONNECTOR_ACROSS, 0.2, HERE, AS_ANKLE),
+    Segment("RightLeg_HipPart2", CONNECTOR_ALONG, 0.2, HERE, AS_ANKLE),
+    Segment("RightLeg_Femur_Thigh", Cylinder(0.0721932, 0.474971), 7.84, (0, 0, -0.2121), TABLE_3_2),
+    Segment("RightLeg_Tibia", Cylinder(0.0546879, 0.439767), 3.08, (0, 0, -0.219884), TABLE_3_2),
+    Segment("RightLeg_Ankle_Part1", CONNECTOR_ACROSS, 0.2, HERE, TABLE_3_2),
+    Segment("RightLeg_Ankle_Part2", Cylinder(0.0285717, 0.0503935, "x"), 0.2, HERE, TABLE_3_2),
+    Segment("RightLeg_Ankle", Cylinder(0.0479659, 0.12771, "x"), 0.2, (0.009, 0, -0.020034), TABLE_3_2),
+    Segment("RightLeg_FootMiddle", Box(0.0889482, 0.095017, 0.0636254), 0.41, (0.044474, 0, -0.003187), TABLE_3_1),
+    Segment("RightLeg_FootToes", Box(0.0624232, 0.100962, 0.035185), 0.25, (0.031212, 0, 0), TABLE_3_1),
+)
+RIGHT_LEG_JOINTS: tuple[JointRow, ...] = (
+    ("RightLegFemurMotion", "hip flexion", MINUS_Y, (0, -0.0875, 0), (-30, 120, AAOS), (250, LEG_STRENGTH)),
+    ("RightLegFemurSideMotion", "hip abduction", MINUS_X, HERE, (-30, 45, AAOS), (200, LEG_STRENGTH)),
+    ("RightLegFemurTwistMotion", "hip internal rotation", Z, HERE, (-45, 45, AAOS), (150, LEG_STRENGTH)),
+    ("RightLegTibiaMotion", "knee flexion", Y, (0, 0, -0.4242), (0, 135, AAOS), (250, LEG_STRENGTH)),
+    ("RightLegAnkleMotion", "ankle dorsiflexion", MINUS_Y, (0, 0, -0.439767), (-50, 35, LUNGE), (200, LEG_STRENGTH)),
+    ("RightLegAnkleRollMotion", "ankle inversion", X, HERE, (-15, 35, AAOS), (120, STRENGTH)),
+    ("RightLegAnkleTwistMotion", "toe-in", Z, HERE, (-20, 20, OURS), (80, STRENGTH)),
+    ("RightLegFootMiddleMotion", "mid-foot dorsiflexion", MINUS_Y, (0.06, 0, -0.033), (-10, 10, OURS), (120, STRENGTH)),
+    ("RightLegFootToesMotion", "toe extension", MINUS_Y, (0.089, 0, -0.017408), (-45, 70, AAOS), (60, STRENGTH)),
+)
 
-class _Effort(NamedTuple):
-    limit_N_m: float
-    source: str
+# Six lumbar and four thoracic levels. The thesis names ten back bodies with one axis each. Here four flex, three bend
+# sideways and three turn, so that their sums are the AAOS thoracolumbar ranges 80/25, 35 and 45 degrees.
+LUMBAR, THORACIC = Cylinder(0.13, 0.03), Cylinder(0.05, 0.0695)
+BACK = (
+    Segment("Lumbar_6", LUMBAR, 1.77, (0, 0, 0.015), LEFT_OVER),
+    Segment("Lumbar_5", LUMBAR, 1.73, (0, 0, 0.015), LEFT_OVER),
+    Segment("Lumbar_4", LUMBAR, 1.70, (0, 0, 0.015), LEFT_OVER),
+    Segment("Lumbar_3", LUMBAR, 1.67, (0, 0, 0.015), LEFT_OVER),
+    Segment("Lumbar_2", LUMBAR, 1.63, (0, 0, 0.015), LEFT_OVER),
+    Segment("Lumbar_1", LUMBAR, 1.60, (0, 0, 0.015), LEFT_OVER),
+    Segment("Thoracic_10_12", THORACIC, 0.645, (0, 0, 0.03475), VERT_SHARE),
+    Segment("Thoracic_7_9", THORACIC, 0.645, (0, 0, 0.03475), VERT_SHARE),
+    Segment("Thoracic_4_6", THORACIC, 0.645, (0, 0, 0.03475), VERT_SHARE),
+    Segment("Thoracic_1_3", THORACIC, 0.645, (0, 0, 0.03475), VERT_SHARE),
+)
+PITCH, ROLL, YAW = (-6.25, 20, AAOS_SHARE), (-35 / 3, 35 / 3, AAOS_SHARE), (-15, 15, AAOS_SHARE)
+BACK_JOINTS: tuple[JointRow, ...] = (
+    ("Lumbar_6_Motion", "lumbar flexion", Y, (0, 0, 0.100033), PITCH, (200, STRENGTH)),
+    ("Lumbar_5_Motion", "lumbar bending to the right", X, (0, 0, 0.03), ROLL, (200, STRENGTH)),
+    ("Lumbar_4_Motion", "lumbar flexion", Y, (0, 0, 0.03), PITCH, (200, STRENGTH)),
+    ("Lumbar_3_Motion", "lumbar bending to the right", X, (0, 0, 0.03), ROLL, (200, STRENGTH)),
+    ("Lumbar_2_Motion", "lumbar flexion", Y, (0, 0, 0.03), PITCH, (200, STRENGTH)),
+    ("Lumbar_1_Motion", "lumbar turning to the left", Z, (0, 0, 0.03), YAW, (200, STRENGTH)),
+    ("Thoracic_10_12_Motion", "thoracic turning to the left", Z, (0, 0, 0.03), YAW, (150, STRENGTH)),
+    ("Thoracic_7_9_Motion", "thoracic flexion", Y, (0, 0, 0.0695), PITCH, (150, STRENGTH)),
+    ("Thoracic_4_6_Motion", "thoracic bending to the right", X, (0, 0, 0.0695), ROLL, (150, STRENGTH)),
+    ("Thoracic_1_3_Motion", "thoracic turning to the left", Z, (0, 0, 0.0695), YAW, (150, STRENGTH)),
+)
+
+RIBS = Segment("Ribs", Cylinder(0.18, 0.30), 10.0, (0, 0, 0.0385), TABLE_3_2)
+SHOULDER_GIRDLE = (Segment("Scapula", Box(0.06, 0.34, 0.10), 0.8, (0, 0, -0.0005), LEFT_OVER),)
+SHOULDER_GIRDLE_JOINTS: tuple[JointRow, ...] = (
+    ("Scapula_Motion", "shoulder girdle turning to the left", Z, HERE, (-15, 15, OURS), (80, STRENGTH)),
+)
+
+# Two neck bodies and the head, which turns on the axis with C1.
+NECK = (
+    Segment("Cervical_5_7", Cylinder(0.055, 0.055), 0.5, (0, 0, 0.0275), LEFT_OVER),
+    Segment("Cervical_3_4_Axis", Cylinder(0.055, 0.06), 0.5, (0, 0, 0.03), LEFT_OVER),
+    Segment("Head", Cylinder(0.077, 0.2275), 4.2, (0.01, 0, 0.03125), LEFT_OVER),
+)
+NECK_JOINTS: tuple[JointRow, ...] = (
+    ("Cervical_5_7_Motion", "neck flexion", Y, (0, 0, 0.0695), (-45, 45, AAOS), (40, STRENGTH)),
+    ("Cervical_3_4_Axis_Motion", "neck bending to the right", X, (0, 0, 0.055), (-45, 45, AAOS), (40, STRENGTH)),
+    ("Head_Motion", "head turning to the left", Z, (0, 0, 0.06), (-60, 60, AAOS), (20, STRENGTH)),
+)
+
+# Shoulder (flexion, abduction, rotation), elbow and wrist, which has one axis (erratum E20).
+RIGHT_ARM = (
+    Segment("RightArm_ShoulderPart1", CONNECTOR_ACROSS, 0.2, HERE, AS_ANKLE),
+    Segment("RightArm_ShoulderPart2", CONNECTOR_ALONG, 0.2, HERE, AS_ANKLE),
+    Segment("RightArm_Humor_Upper_Arm", Cylinder(0.0499598, 0.35071), 2.24, (0, 0, -0.1475), TABLE_3_2),
+    Segment("RightArm_UlnaRadius_Forearm", Cylinder(0.0453482, 0.292366), 1.26, (0, 0, -0.1325), TABLE_3_2),
+    Segment("RightArm_Hand", Box(0.0788498, 0.040807, 0.096334), 0.4, (0, 0, -0.048167), TABLE_3_1),
+)
+RIGHT_ARM_JOINTS: tuple[JointRow, ...] = (
+    ("RightArmShoulderMotion", "shoulder flexion", MINUS_Y, (0, -0.23, -0.0205), (-60, 180, AAOS), (80, STRENGTH)),
+    ("RightArmShoulderSideMotion", "shoulder abduction", MINUS_X, HERE, (-30, 180, AAOS_ADDUCTION), (80, STRENGTH)),
+    ("RightArmShoulderTwistMotion", "shoulder internal rotation", Z, HERE, (-90, 70, AAOS), (80, STRENGTH)),
+    ("RightArmElbowMotion", "elbow flexion", MINUS_Y, (0, 0, -0.295), (0, 150, AAOS), (60, STRENGTH)),
+    ("RightArmWristMotion", "wrist palmar flexion", X, (0, 0, -0.265), (-70, 80, AAOS), (20, STRENGTH)),
+)
 
 
 def human() -> Skeleton:
     """The reference human: an adult man of 70 kg and 1.75 m, standing on z = 0."""
-    pelvis = Segment("Pelvis", Box(0.17291, 0.322739, 0.211809), 7.56, (0, 0, 0.036), TABLE_3_1)
-    leg, arm = _right_leg(), _right_arm()
-    branches = [*leg, *_mirrored(leg), *_trunk(), *_head_and_neck(), *arm, *_mirrored(arm)]
+    leg = _chain("Pelvis", RIGHT_LEG, RIGHT_LEG_JOINTS)
+    arm = _chain("Scapula", RIGHT_ARM, RIGHT_ARM_JOINTS)
+    branches: list[tuple[Segment, Joint | Weld]] = [
+        *leg,
+        *((segment.mirrored(), joint.mirrored()) for segment, joint in leg),
+        *_chain("Pelvis", BACK, BACK_JOINTS),
+        (RIBS, Weld("Thoracic_7_9", "Ribs", HERE)),
+        *_chain("Thoracic_1_3", SHOULDER_GIRDLE, SHOULDER_GIRDLE_JOINTS),
+        *_chain("Thoracic_1_3", NECK, NECK_JOINTS),
+        *arm,
+        *((segment.mirrored(), joint.mirrored()) for segment, joint in arm),
+    ]
     return Skeleton(
-        segments=(pelvis, *(segment for segment, _ in branches)),
+        segments=(PELVIS, *(segment for segment, _ in branches)),
         joints=tuple(joint for _, joint in branches if isinstance(joint, Joint)),
         welds=tuple(weld for _, weld in branches if isinstance(weld, Weld)),
         root_height=HIP_HEIGHT,
     )
 
 
-def _right_leg() -> list[Branch]:
-    """Hip (flexion, abduction, rotation), knee, ankle (three), mid-foot, toes."""
-    across = Cylinder(0.0285715, 0.0503935, "y")
-    along = Cylinder(0.0285715, 0.0503935, "x")
-    ankle_along = Cylinder(0.0285717, 0.0503935, "x")
-    hind_foot = Cylinder(0.0479659, 0.12771, "x")
-    mid_foot = Box(0.0889482, 0.095017, 0.0636254)
-    return [
-        _joined(
-            Segment("RightLeg_HipPart1", across, 0.2, HERE, AS_ANKLE),
-            "RightLegFemurMotion",
-            "hip flexion",
-            parent="Pelvis",
-            axis=MINUS_Y,
-            origin=(0, -0.0875, 0),
-            range_=_Range(-30, 120, AAOS),
-            effort=_Effort(250, LEG_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_HipPart2", along, 0.2, HERE, AS_ANKLE),
-            "RightLegFemurSideMotion",
-            "hip abduction",
-            parent="RightLeg_HipPart1",
-            axis=MINUS_X,
-            origin=HERE,
-            range_=_Range(-30, 45, AAOS),
-            effort=_Effort(200, LEG_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_Femur_Thigh", Cylinder(0.0721932, 0.474971), 7.84, (0, 0, -0.2121), TABLE_3_2),
-            "RightLegFemurTwistMotion",
-            "hip internal rotation",
-            parent="RightLeg_HipPart2",
-            axis=Z,
-            origin=HERE,
-            range_=_Range(-45, 45, AAOS),
-            effort=_Effort(150, LEG_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_Tibia", Cylinder(0.0546879, 0.439767), 3.08, (0, 0, -0.219884), TABLE_3_2),
-            "RightLegTibiaMotion",
-            "knee flexion",
-            parent="RightLeg_Femur_Thigh",
-            axis=Y,
-            origin=(0, 0, -0.4242),
-            range_=_Range(0, 135, AAOS),
-            effort=_Effort(250, LEG_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_Ankle_Part1", across, 0.2, HERE, TABLE_3_2),
-            "RightLegAnkleMotion",
-            "ankle dorsiflexion",
-            parent="RightLeg_Tibia",
-            axis=MINUS_Y,
-            origin=(0, 0, -0.439767),
-            range_=_Range(-50, 35, LOADED_ANKLE),
-            effort=_Effort(200, LEG_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_Ankle_Part2", ankle_along, 0.2, HERE, TABLE_3_2),
-            "RightLegAnkleRollMotion",
-            "ankle inversion",
-            parent="RightLeg_Ankle_Part1",
-            axis=X,
-            origin=HERE,
-            range_=_Range(-15, 35, AAOS),
-            effort=_Effort(120, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_Ankle", hind_foot, 0.2, (0.009, 0, -0.020034), TABLE_3_2),
-            "RightLegAnkleTwistMotion",
-            "toe-in",
-            parent="RightLeg_Ankle_Part2",
-            axis=Z,
-            origin=HERE,
-            range_=_Range(-20, 20, OUR_ESTIMATE),
-            effort=_Effort(80, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_FootMiddle", mid_foot, 0.41, (0.044474, 0, -0.003187), TABLE_3_1),
-            "RightLegFootMiddleMotion",
-            "mid-foot dorsiflexion",
-            parent="RightLeg_Ankle",
-            axis=MINUS_Y,
-            origin=(0.06, 0, -0.033),
-            range_=_Range(-10, 10, OUR_ESTIMATE),
-            effort=_Effort(120, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightLeg_FootToes", Box(0.0624232, 0.100962, 0.035185), 0.25, (0.031212, 0, 0), TABLE_3_1),
-            "RightLegFootToesMotion",
-            "toe extension",
-            parent="RightLeg_FootMiddle",
-            axis=MINUS_Y,
-            origin=(0.089, 0, -0.017408),
-            range_=_Range(-45, 70, AAOS),
-            effort=_Effort(60, OUR_STRENGTH),
-        ),
-    ]
-
-
-def _trunk() -> list[Branch]:
-    """Six lumbar and four thoracic levels, ribs and shoulder girdle.
-
-    The thesis names ten back bodies with one axis each. Here four flex, three bend sideways and
-    three turn, so that their sums are the AAOS thoracolumbar ranges 80/25, 35 and 45 degrees.
-    """
-    pitch = ("flexion", Y, _Range(-6.25, 20, AAOS_SHARE))
-    roll = ("bending to the right", X, _Range(-35 / 3, 35 / 3, AAOS_SHARE))
-    yaw = ("turning to the left", Z, _Range(-15, 15, AAOS_SHARE))
-
-    back: list[Branch] = []
-    parent, rise = "Pelvis", 0.100033
-    lumbar_masses = (1.77, 1.73, 1.70, 1.67, 1.63, 1.60)
-    for level, mass, (what, axis, range_) in zip(
-        (6, 5, 4, 3, 2, 1), lumbar_masses, (pitch, roll, pitch, roll, pitch, yaw), strict=True
-    ):
-        name = f"Lumbar_{level}"
-        back.append(
-            _joined(
-                Segment(name, Cylinder(0.13, 0.03), mass, (0, 0, 0.015), LEFT_OVER),
-                f"{name}_Motion",
-                f"lumbar {what}",
-                parent=parent,
-                axis=axis,
-                origin=(0, 0, rise),
-                range_=range_,
-                effort=_Effort(200, OUR_STRENGTH),
-            )
+def _chain(parent: str, segments: Sequence[Segment], joints: Sequence[JointRow]) -> list[tuple[Segment, Joint]]:
+    """Segments with their inboard joints, each on the segment before it, the first on `parent`."""
+    chain = []
+    for segment, (name, motion, axis, origin, (low, high, range_source), effort) in zip(segments, joints, strict=True):
+        limits = (math.radians(low), math.radians(high))
+        joint = Joint(
+            *(name, motion, parent, segment.name, axis, origin, limits, range_source, *effort), ROTOR_INERTIA, DAMPING
         )
-        parent, rise = name, 0.03
-    for levels, (what, axis, range_) in zip(("10_12", "7_9", "4_6", "1_3"), (yaw, pitch, roll, yaw), strict=True):
-        name = f"Thoracic_{levels}"
-        back.append(
-            _joined(
-                Segment(name, Cylinder(0.05, 0.0695), 0.645, (0, 0, 0.03475), VERT_SHARE),
-                f"{name}_Motion",
-                f"thoracic {what}",
-                parent=parent,
-                axis=axis,
-                origin=(0, 0, rise),
-                range_=range_,
-                effort=_Effort(150, OUR_STRENGTH),
-            )
-        )
-        parent, rise = name, 0.0695
-    ribs = Segment("Ribs", Cylinder(0.18, 0.30), 10.0, (0, 0, 0.0385), TABLE_3_2)
-    shoulder_girdle = _joined(
-        Segment("Scapula", Box(0.06, 0.34, 0.10), 0.8, (0, 0, -0.0005), LEFT_OVER),
-        "Scapula_Motion",
-        "shoulder girdle turning to the left",
-        parent="Thoracic_1_3",
-        axis=Z,
-        origin=HERE,
-        range_=_Range(-15, 15, OUR_ESTIMATE),
-        effort=_Effort(80, OUR_STRENGTH),
-    )
-    return [*back, (ribs, Weld("Thoracic_7_9", "Ribs", HERE)), shoulder_girdle]
-
-
-def _head_and_neck() -> list[Branch]:
-    """Two neck bodies (flexion, side bending) and the head, which turns on the axis with C1."""
-    return [
-        _joined(
-            Segment("Cervical_5_7", Cylinder(0.055, 0.055), 0.5, (0, 0, 0.0275), LEFT_OVER),
-            "Cervical_5_7_Motion",
-            "neck flexion",
-            parent="Thoracic_1_3",
-            axis=Y,
-            origin=(0, 0, 0.0695),
-            range_=_Range(-45, 45, AAOS),
-            effort=_Effort(40, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("Cervical_3_4_Axis", Cylinder(0.055, 0.06), 0.5, (0, 0, 0.03), LEFT_OVER),
-            "Cervical_3_4_Axis_Motion",
-            "neck bending to the right",
-            parent="Cervical_5_7",
-            axis=X,
-            origin=(0, 0, 0.055),
-            range_=_Range(-45, 45, AAOS),
-            effort=_Effort(40, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("Head", Cylinder(0.077, 0.2275), 4.2, (0.01, 0, 0.03125), LEFT_OVER),
-            "Head_Motion",
-            "head turning to the left",
-            parent="Cervical_3_4_Axis",
-            axis=Z,
-            origin=(0, 0, 0.06),
-            range_=_Range(-60, 60, AAOS),
-            effort=_Effort(20, OUR_STRENGTH),
-        ),
-    ]
-
-
-def _right_arm() -> list[Branch]:
-    """Shoulder (flexion, abduction, rotation), elbow and wrist, which has one axis (erratum E20)."""
-    across = Cylinder(0.0285715, 0.0503935, "y")
-    along = Cylinder(0.0285715, 0.0503935, "x")
-    return [
-        _joined(
-            Segment("RightArm_ShoulderPart1", across, 0.2, HERE, AS_ANKLE),
-            "RightArmShoulderMotion",
-            "shoulder flexion",
-            parent="Scapula",
-            axis=MINUS_Y,
-            origin=(0, -0.23, -0.0205),
-            range_=_Range(-60, 180, AAOS),
-            effort=_Effort(80, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightArm_ShoulderPart2", along, 0.2, HERE, AS_ANKLE),
-            "RightArmShoulderSideMotion",
-            "shoulder abduction",
-            parent="RightArm_ShoulderPart1",
-            axis=MINUS_X,
-            origin=HERE,
-            range_=_Range(-30, 180, f"{AAOS}; adduction 30 is {OUR_ESTIMATE}"),
-            effort=_Effort(80, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightArm_Humor_Upper_Arm", Cylinder(0.0499598, 0.35071), 2.24, (0, 0, -0.1475), TABLE_3_2),
-            "RightArmShoulderTwistMotion",
-            "shoulder internal rotation",
-            parent="RightArm_ShoulderPart2",
-            axis=Z,
-            origin=HERE,
-            range_=_Range(-90, 70, AAOS),
-            effort=_Effort(80, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightArm_UlnaRadius_Forearm", Cylinder(0.0453482, 0.292366), 1.26, (0, 0, -0.1325), TABLE_3_2),
-            "RightArmElbowMotion",
-            "elbow flexion",
-            parent="RightArm_Humor_Upper_Arm",
-            axis=MINUS_Y,
-            origin=(0, 0, -0.295),
-            range_=_Range(0, 150, AAOS),
-            effort=_Effort(60, OUR_STRENGTH),
-        ),
-        _joined(
-            Segment("RightArm_Hand", Box(0.0788498, 0.040807, 0.096334), 0.4, (0, 0, -0.048167), TABLE_3_1),
-            "RightArmWristMotion",
-            "wrist palmar flexion",
-            parent="RightArm_UlnaRadius_Forearm",
-            axis=X,
-            origin=(0, 0, -0.265),
-            range_=_Range(-70, 80, AAOS),
-            effort=_Effort(20, OUR_STRENGTH),
-        ),
-    ]
-
-
-def _joined(
-    segment: Segment,
-    name: str,
-    motion: str,
-    *,
-    parent: str,
-    axis: Vector3,
-    origin: Vector3,
-    range_: _Range,
-    effort: _Effort,
-) -> Branch:
-    return segment, Joint(
-        name=name,
-        motion=motion,
-        parent=parent,
-        child=segment.name,
-        axis=axis,
-        origin=origin,
-        range_rad=(math.radians(range_.low_deg), math.radians(range_.high_deg)),
-        range_source=range_.source,
-        effort_limit_N_m=effort.limit_N_m,
-        effort_source=effort.source,
-        rotor_inertia=ROTOR_INERTIA,
-        damping=DAMPING,
-    )
-
-
-def _mirrored(limb: list[Branch]) -> list[Branch]:
-    return [(segment.mirrored(), joint.mirrored()) for segment, joint in limb if isinstance(joint, Joint)]
+        chain.append((segment, joint))
+        parent = segment.name
+    return chain
