@@ -53,12 +53,7 @@ class Segment:
 
     def scaled(self, length: float, mass: float) -> Segment:
         """Return the segment with its lengths and its mass multiplied by two factors."""
-        return replace(
-            self,
-            shape=self.shape.scaled(length),
-            mass=self.mass * mass,
-            com=_times(self.com, length),
-        )
+        return replace(self, shape=self.shape.scaled(length), mass=self.mass * mass, com=_times(self.com, length))
 
 
 @dataclass(frozen=True)

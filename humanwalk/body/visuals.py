@@ -77,11 +77,7 @@ class Visual:
     def scaled(self, factor: float) -> Visual:
         """Return the part with every length multiplied by a factor."""
         x, y, z = self.center
-        return replace(
-            self,
-            size=tuple(s * factor for s in self.size),
-            center=(x * factor, y * factor, z * factor),
-        )
+        return replace(self, size=tuple(s * factor for s in self.size), center=(x * factor, y * factor, z * factor))
 
 
 def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
@@ -216,10 +212,7 @@ def _striped(body: str, part: str, center: Vector3, radii: Vector3) -> Iterator[
 
 
 def _sole(
-    body: str,
-    ground: float,
-    rounds: tuple[tuple[float, float], ...],
-    slabs: tuple[tuple[float, float, float], ...],
+    body: str, ground: float, rounds: tuple[tuple[float, float], ...], slabs: tuple[tuple[float, float, float], ...]
 ) -> Iterator[Visual]:
     """Part of a shoe sole: round ends (x, radius) and slabs (back, front, width) on the ground."""
     thickness = 0.020

@@ -6,12 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from pydrake.geometry import (
-    CollisionFilterDeclaration,
-    GeometrySet,
-    ProximityProperties,
-    SceneGraph,
-)
+from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, ProximityProperties, SceneGraph
 from pydrake.multibody.plant import ContactModel, MultibodyPlant
 from pydrake.multibody.tree import BodyIndex
 

@@ -14,10 +14,7 @@ ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), fr
 
 
 @app.command(rich_help_panel=SHOW, epilog="Example: humanwalk replay runs/thesis")
-def replay(
-    run: RunArgument,
-    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
-) -> None:
+def replay(run: RunArgument, browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True) -> None:
     """Serve the replay of a run on this machine only, and open it in the browser."""
     from humanwalk.view.serve import serve_replay
 
@@ -93,8 +90,7 @@ def _rendering() -> Iterator[Callable[[int, int], None]]:
 def plot(
     run: RunArgument,
     only: Annotated[
-        list[str],
-        typer.Option(metavar="NAME", help="Name of a plot, or its beginning; can be given several times."),
+        list[str], typer.Option(metavar="NAME", help="Name of a plot, or its beginning; can be given several times.")
     ] = [],  # noqa: B006
     format_: Annotated[str, typer.Option("--format", help="png, svg or pdf.")] = "png",
 ) -> None:

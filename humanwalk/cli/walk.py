@@ -125,13 +125,7 @@ def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
 
 
 def _simulate_with_progress(
-    scenario: Scenario,
-    name: str,
-    path: Path,
-    meshcat: Any,
-    live: bool,
-    checkpoint_period: float,
-    console: Console,
+    scenario: Scenario, name: str, path: Path, meshcat: Any, live: bool, checkpoint_period: float, console: Console
 ) -> Outcome:
     def checkpoint(so_far: Outcome) -> None:
         # A disk that is full now may have space at the end.

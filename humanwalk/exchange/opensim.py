@@ -11,13 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body import SIDES
-from humanwalk.body.opensim_names import (
-    COORDINATES,
-    PELVIS_ROTATIONS,
-    PELVIS_TRANSLATIONS,
-    R_OW,
-    SPINE_COORDINATES,
-)
+from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
 from humanwalk.exchange.motion import ground_forces, marker_paths, sample_rate
 from humanwalk.files import write_text
 from humanwalk.measures.effort import joint_names

@@ -50,11 +50,7 @@ class ArcLength:
                 f"s = {target[~inside].flat[0]:g} is outside [0, {self.length:g}]: s is the distance along the curve"
             )
         target = np.clip(target, 0.0, self.length)
-        panel = np.clip(
-            np.searchsorted(self._s_of_panel, target, side="right") - 1,
-            0,
-            len(self._s_of_panel) - 2,
-        )
+        panel = np.clip(np.searchsorted(self._s_of_panel, target, side="right") - 1, 0, len(self._s_of_panel) - 2)
         start, s_start = self._u_of_panel[panel], self._s_of_panel[panel]
         low, high = start, self._u_of_panel[panel + 1]
         span = self._s_of_panel[panel + 1] - s_start

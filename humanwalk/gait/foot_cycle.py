@@ -180,10 +180,7 @@ class FootCycle:
         swing_fraction = 1.0 - p.duty_factor
         self._swing_fraction = swing_fraction
         self._swing = SwingCurve(
-            _SWING_X * p.step_length,
-            _SWING_Z * p.step_height,
-            p.walked_stride * swing_fraction,
-            p.swing,
+            _SWING_X * p.step_length, _SWING_Z * p.step_height, p.walked_stride * swing_fraction, p.swing
         )
 
     def in_stance(self, phase: float) -> bool:

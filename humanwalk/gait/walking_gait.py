@@ -9,13 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from humanwalk.gait.foot_cycle import (
-    FootCycle,
-    FootPathParameters,
-    start_distance,
-    start_swing,
-    swing_hump,
-)
+from humanwalk.gait.foot_cycle import FootCycle, FootPathParameters, start_distance, start_swing, swing_hump
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import ParameterError, require_in_range
@@ -84,11 +78,7 @@ class WalkingGait:
     """
 
     def __init__(
-        self,
-        parameters: FootPathParameters,
-        hip_half_width: float,
-        ramp: SpeedRamp,
-        first_swing: Side = "Right",
+        self, parameters: FootPathParameters, hip_half_width: float, ramp: SpeedRamp, first_swing: Side = "Right"
     ) -> None:
         require_in_range("hip_half_width", hip_half_width, "m", 0.02, 0.3)
         if first_swing not in SIDES:

@@ -84,9 +84,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
     if plant is not None and scenario.simulation.integrator == "cenic":
         ApplySimulatorConfig(
             SimulatorConfig(
-                integration_scheme="cenic",
-                accuracy=scenario.simulation.accuracy,
-                max_step_size=CENIC_MAX_STEP,
+                integration_scheme="cenic", accuracy=scenario.simulation.accuracy, max_step_size=CENIC_MAX_STEP
             ),
             simulator,
         )

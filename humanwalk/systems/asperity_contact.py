@@ -12,13 +12,7 @@ from pydrake.systems.framework import Context, EventStatus, LeafSystem, State, V
 from humanwalk.body import Side
 from humanwalk.body.contact import SolePatch
 from humanwalk.contact.asperity import AsperityParameters
-from humanwalk.contact.contact_step import (
-    ContactMemory,
-    ContactStep,
-    body_jacobians,
-    body_mobility,
-    mobility_factor,
-)
+from humanwalk.contact.contact_step import ContactMemory, ContactStep, body_jacobians, body_mobility, mobility_factor
 from humanwalk.contact.ground_force import FootForce, foot_force
 from humanwalk.numerics import Array
 from humanwalk.systems.foot_signals import declare_foot_signals

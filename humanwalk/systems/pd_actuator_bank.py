@@ -43,12 +43,7 @@ class PdActuatorBank(LeafSystem):
     """
 
     def __init__(
-        self,
-        plant: MultibodyPlant,
-        kp: Array,
-        kd: Array,
-        law: PdLaw = "implicit",
-        effort_limits: Array | None = None,
+        self, plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw = "implicit", effort_limits: Array | None = None
     ) -> None:
         """Make the bank.
 

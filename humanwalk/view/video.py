@@ -177,10 +177,7 @@ def record_video(
     make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
         frames = Path(folder) / "frames.mjpeg"
-        with (
-            open_stage(page, parameters.width, parameters.height, duration) as stage,
-            frames.open("wb") as file,
-        ):
+        with open_stage(page, parameters.width, parameters.height, duration) as stage, frames.open("wb") as file:
             times = parameters.times(stage.duration)
             for done, time in enumerate(times, start=1):
                 file.write(stage.still(time, camera(parameters.view, time)))

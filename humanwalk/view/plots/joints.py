@@ -13,17 +13,7 @@ from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.run.folder import Run
-from humanwalk.view.plots.drawing import (
-    LABEL_SIZE,
-    REFERENCE,
-    SIDE,
-    TICK_SIZE,
-    curve,
-    label,
-    legend,
-    level,
-    new_figure,
-)
+from humanwalk.view.plots.drawing import LABEL_SIZE, REFERENCE, SIDE, TICK_SIZE, curve, label, legend, level, new_figure
 
 
 def joint_torques(run: Run) -> Figure | None:
