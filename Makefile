@@ -1,16 +1,16 @@
-# Every target sets up what it needs: a Python, .venv, the packages of requirements.lock.
+# Every target first creates .venv with the packages of requirements.lock.
 .DEFAULT_GOAL := help
 .PHONY: help walk test coverage lint docs gallery lock clean
 
 BIN := .venv/bin
 ARGS ?=
-# One file's tests stay in one worker, so that they share the simulations that they look at.
+# Tests of one file run in one worker, so that they share its simulations.
 PYTEST_ARGS ?= -n auto --maxprocesses 8 --dist loadfile
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
 
-walk: .venv/.installed ## Simulate a walk and write its run folder; options go in ARGS="..."
+walk: .venv/.installed ## Simulate a walk and write its run folder; options in ARGS="..."
 	@$(BIN)/humanwalk walk $(ARGS)
 
 test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
@@ -19,19 +19,19 @@ test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
 coverage: .venv/.installed ## Run the tests and print the share of humanwalk/ that they execute
 	@DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 $(BIN)/pytest --cov $(PYTEST_ARGS)
 
-lint: .venv/.installed ## Check style, types and the import rule
+lint: .venv/.installed ## Check style, types and import layers
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-docs: .venv/.installed ## Build the book into build/docs; asks no other host
+docs: .venv/.installed ## Build the book in build/docs; needs no network
 	@NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --quiet --strict
 
-gallery: .venv/.installed ## Make every picture and video of the book anew (a quarter of an hour)
+gallery: .venv/.installed ## Regenerate all pictures and videos of the book (half an hour)
 	@$(BIN)/python docs/make_gallery.py
 
-lock: .venv/.installed ## Choose the newest versions that pyproject.toml allows
+lock: .venv/.installed ## Update requirements.lock to the newest allowed versions
 	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-header --no-annotate --upgrade \
 		--python-version 3.12 --group dev --group docs --output-file requirements.lock pyproject.toml
 
