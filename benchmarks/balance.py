@@ -6,6 +6,7 @@
     python benchmarks/balance.py pushes --later 0.1
     python benchmarks/balance.py paths
     python benchmarks/balance.py invariance --duration 12
+    python benchmarks/balance.py bodies --duration 12 --speeds 1.0 1.4
 
 Every run is printed as it ends; `--json FILE` keeps the rows.
 """
@@ -46,6 +47,9 @@ deviation, and the body starts with about 0.1 m/s; gains are known to a twentiet
 
 PUSH_TIMES = [8.0 + 1.04 * share for share in (0.0, 0.2, 0.4, 0.6, 0.8)]
 """Five timings over a stride, in the steady walk [s]."""
+
+BODIES = ((50, 1.50), (60, 1.65), (90, 1.80), (110, 1.95))
+"""Body mass [kg] and stature [m]; the reference has 70 kg and 1.75 m."""
 
 AFTER_PUSH = 4.0
 """Who is up this long after a push has survived it [s]: seven steps."""
@@ -144,7 +148,7 @@ def pushed(walker: Diagram, context: Context, push: Push) -> dict[str, Any]:
 def invariance(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """The same walk with finer physics, finer control and another contact: steps and speed should not change."""
     for contact in ("point", "hydroelastic"):
-        for time_step, period in ((0.001, 0.004), (0.0005, 0.004), (0.001, 0.002)):
+        for time_step, period in ((0.002, 0.004), (0.001, 0.004), (0.002, 0.002)):
             label = f"{contact}, physics {1e3 * time_step:g} ms, control {1e3 * period:g} ms"
             overrides = {
                 "contact": contact,
@@ -152,6 +156,14 @@ def invariance(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
                 "controller.balanced.control_period": str(period),
             }
             yield measure(label, walk(1.0, args.duration, **overrides))
+
+
+def bodies(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """Other bodies at every speed, with the gains of the reference body."""
+    for mass, stature in BODIES:
+        for speed in args.speeds:
+            subject = {"subject.mass": str(mass), "subject.stature": str(stature)}
+            yield measure(f"{mass} kg, {stature} m, {speed:g} m/s", walk(speed, args.duration, **subject))
 
 
 def paths(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -172,7 +184,7 @@ def off_path(scenario: Scenario, x: Array, y: Array) -> float:
     return max(float(np.abs(np.array(curve) - complex(*point)).min()) for point in zip(x, y, strict=True))
 
 
-COMMANDS = {"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths, "invariance": invariance}
+COMMANDS = {"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths, "invariance": invariance, "bodies": bodies}
 
 
 def main() -> None:
