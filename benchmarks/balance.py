@@ -184,7 +184,14 @@ def off_path(scenario: Scenario, x: Array, y: Array) -> float:
     return max(float(np.abs(np.array(curve) - complex(*point)).min()) for point in zip(x, y, strict=True))
 
 
-COMMANDS = {"speeds": speeds, "seeds": seeds, "pushes": pushes, "paths": paths, "invariance": invariance, "bodies": bodies}
+COMMANDS = {
+    "speeds": speeds,
+    "seeds": seeds,
+    "pushes": pushes,
+    "paths": paths,
+    "invariance": invariance,
+    "bodies": bodies,
+}
 
 
 def main() -> None:
