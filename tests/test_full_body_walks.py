@@ -46,7 +46,7 @@ class Walk:
         text = f"""
             duration: 8.0
             controller: {{balanced: {{command: {{points: {COMMANDS[name]}}}}}}}
-            pushes: {{pushes: [{push if name == "push" else ""}]}}
+            pushes: {{given: [{push if name == "push" else ""}]}}
         """
         self.outcome = simulate(parse_scenario(text))
         self.time = self["time_s"]
