@@ -2,21 +2,21 @@
 
 The thesis solves J^T J dtheta = -J^T G for the residual G between the pose of the sole and its desired pose. As printed
 that system is singular: a leg has seven joints for six rows, and rank five with a straight knee (erratum E13). Here the
-step is taken by the Moore-Penrose inverse through an SVD, damped in proportion to the residual, kept inside the joint
-ranges, and accepted only if it reduces the residual. A target out of reach gives the nearest pose, marked as not
-converged.
+step is the least-squares one, damped in proportion to the residual, kept inside the joint ranges, and accepted only if
+it reduces the residual. A target out of reach gives the nearest pose, marked as not converged.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable
+from pydrake.multibody.tree import FixedOffsetFrame, JacobianWrtVariable, RevoluteJoint
 
-from humanwalk.numerics import Array, Mask
+from humanwalk.numerics import Array
 from humanwalk.quantity import quantity
 
 JacobianKind = Literal["analytic", "numeric"]
@@ -27,8 +27,8 @@ STEP_FRACTIONS = (1.0, 0.5, 0.25, 0.1, 0.03, 0.003)
 STATIONARY_GAIN = 1e-6
 """Relative reduction of the residual by a step below which the pose counts as the nearest."""
 
-RANK_FLOOR = 1e-9
-"""Singular value of the weighted J [m/rad] up to which a motion of the joints does not move the sole."""
+MIN_DAMPING = 1e-6
+"""Least damping of a step [m/rad] (our choice): J J^T of a straight leg has no inverse."""
 
 RESTART_GAIN = 0.5
 """Fraction of the first residual below which the pose of the second start is taken: a smaller improvement does not
@@ -88,7 +88,7 @@ class InverseKinematicsSolution(NamedTuple):
 
 
 class LegKinematics:
-    """The chain of joints between a base frame P and a tip frame S of a plant.
+    """The chain of joints between a base frame P and a tip frame S of a plant, as a plant of its own.
 
     Attributes:
         joint_names: the n joints of the chain, in the order of theta.
@@ -99,49 +99,49 @@ class LegKinematics:
         """Make the chain.
 
         Args:
-            plant: a finalized plant; joints that are not in `joint_names` stay at their default angles.
-            base_frame: name of the frame P in which poses are measured.
+            plant: a finalized plant.
+            base_frame: name of the frame P in which poses are measured; the world frame of the chain.
             tip_frame: name of the frame S that is to be placed.
-            joint_names: revolute joints between P and S, in the order of theta.
+            joint_names: revolute joints between P and S, from P outward; no others lie between them.
         """
-        self._plant = plant
-        self._context = plant.CreateDefaultContext()
-        self._positions = plant.GetPositions(self._context)
-        self._P, self._S = plant.GetFrameByName(base_frame), plant.GetFrameByName(tip_frame)
-        joints = [plant.GetJointByName(name) for name in joint_names]
-        self._q = np.array([joint.position_start() for joint in joints])
-        self._v = np.array([joint.velocity_start() for joint in joints])
+        joints = [cast(RevoluteJoint, plant.GetJointByName(name)) for name in joint_names]
         self.joint_names = tuple(joint_names)
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
+        self._plant = chain = MultibodyPlant(time_step=0.0)
+        self._P = end = chain.world_frame()
+        context, inner = plant.CreateDefaultContext(), plant.GetFrameByName(base_frame)
+        for joint in joints:
+            outer = joint.frame_on_parent()
+            hinge = chain.AddFrame(FixedOffsetFrame(f"{joint.name()}_hinge", end, outer.CalcPose(context, inner)))
+            inner, end = joint.frame_on_child(), chain.AddRigidBody(joint.name()).body_frame()
+            chain.AddJoint(RevoluteJoint(joint.name(), hinge, end, joint.revolute_axis()))
+        X_tip = plant.GetFrameByName(tip_frame).CalcPose(context, inner)
+        self._S = chain.AddFrame(FixedOffsetFrame(tip_frame, end, X_tip))
+        chain.Finalize()
+        self._context = chain.CreateDefaultContext()
 
     def X_PS(self, theta: Array) -> RigidTransform:
         """Pose of the tip S in the base P at joint angles theta [rad], shape (n,)."""
-        self._set_angles(theta)
-        return self._S.CalcPose(self._context, self._P)
+        self._plant.SetPositions(self._context, theta)
+        return self._S.CalcPoseInWorld(self._context)
 
     def jacobian(self, theta: Array, kind: JacobianKind = "analytic") -> Array:
         """Jacobian of the spatial velocity [angular; translational] of S in P, expressed in P; shape (6, n)."""
         return self._analytic_jacobian(theta) if kind == "analytic" else self._numeric_jacobian(theta)
 
     def _analytic_jacobian(self, theta: Array) -> Array:
-        self._set_angles(theta)
+        self._plant.SetPositions(self._context, theta)
         J: Array = self._plant.CalcJacobianSpatialVelocity(
             self._context, JacobianWrtVariable.kV, self._S, np.zeros(3), self._P, self._P
         )
-        return J[:, self._v]
+        return J
 
     def _numeric_jacobian(self, theta: Array) -> Array:
         """Central differences, as in the thesis (section 1.4)."""
         steps = DIFFERENCE_STEP * np.eye(theta.size)
         differences = [pose_error(self.X_PS(theta + step), self.X_PS(theta - step)) for step in steps]
         return np.column_stack(differences) / (2 * DIFFERENCE_STEP)
-
-    def _set_angles(self, theta: Array) -> None:
-        # Drake keeps the kinematics of the present positions: a pose is followed by its Jacobian.
-        if not np.array_equal(self._positions[self._q], theta):
-            self._positions[self._q] = theta
-            self._plant.SetPositions(self._context, self._positions)
 
 
 def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
@@ -189,19 +189,19 @@ def _iterate(
     def residual(theta: Array) -> tuple[Array, float]:
         """The residual G and its weighted norm."""
         G = pose_error(leg.X_PS(theta), X_PS_desired)
-        return G, float(np.linalg.norm(ROW_WEIGHTS * G))
+        return G, math.hypot(*(ROW_WEIGHTS * G))
 
-    theta = np.clip(theta_guess, leg.lower, leg.upper)
+    theta = theta_guess.clip(leg.lower, leg.upper)
     G, cost = residual(theta)
     iterations, pull = 0, parameters.neutral_pull
-    while np.linalg.norm(G) > parameters.tolerance and iterations < parameters.max_iterations:
+    while math.hypot(*G) > parameters.tolerance and iterations < parameters.max_iterations:
         iterations += 1
         J = ROW_WEIGHTS[:, None] * leg.jacobian(theta, parameters.jacobian)
         step = _newton_step(leg, theta, J, ROW_WEIGHTS * G, DAMPING * cost, pull)
         step *= MAX_STEP / max(np.abs(step).max(), MAX_STEP)
         # Far from the target and at the ends of the joint ranges a full step can increase the residual.
         for fraction in STEP_FRACTIONS:
-            trial = np.clip(theta + fraction * step, leg.lower, leg.upper)
+            trial = (theta + fraction * step).clip(leg.lower, leg.upper)
             trial_G, trial_cost = residual(trial)
             if trial_cost < cost:
                 break
@@ -213,21 +213,20 @@ def _iterate(
         if is_stationary:
             break
         pull = 0.0
-    norm = float(np.linalg.norm(G))
+    norm = math.hypot(*G)
     return InverseKinematicsSolution(theta, norm, iterations, norm <= parameters.tolerance), cost
 
 
 def _newton_step(leg: LegKinematics, theta: Array, J: Array, G: Array, damping: float, pull: float) -> Array:
-    """Step -J+ G - (1 - J+ J) pull theta of the joints that can move, with J+ damped in the first term; shape (n,)."""
+    """Step -J+ G - (1 - J+ J) pull theta with the damped inverse J+ = J^T (J J^T + damping^2)^-1; shape (n,)."""
+    back = -pull * theta
+    damping_squared = (damping**2 + MIN_DAMPING**2) * np.eye(len(G))
 
-    def step_of(free: Mask) -> Array:
-        U, s, Vt = np.linalg.svd(J[:, free])
-        rank = np.count_nonzero(s > RANK_FLOOR)
-        U, s, V, null = U[:, :rank], s[:rank], Vt[:rank].T, Vt[rank:].T
-        step: Array = -V @ (s / (s**2 + damping**2) * (U.T @ G)) - null @ (null.T @ (pull * theta[free]))
+    def step_of(J: Array) -> Array:
+        step: Array = back - J.T @ np.linalg.solve(J @ J.T + damping_squared, G + J @ back)
         return step
 
-    return _within_ranges(leg, theta, step_of)
+    return _within_ranges(leg, theta, J, step_of)
 
 
 def joint_velocity(
@@ -248,29 +247,27 @@ def joint_velocity(
     J = ROW_WEIGHTS[:, None] * leg.jacobian(theta, parameters.jacobian)
     V = ROW_WEIGHTS * V_PS_desired
 
-    def velocity_of(free: Mask) -> Array:
-        U, s, Vt = np.linalg.svd(J[:, free], full_matrices=False)
+    def velocity_of(J: Array) -> Array:
+        U, s, Vt = np.linalg.svd(J, full_matrices=False)
         velocity: Array = Vt.T @ (s / np.maximum(s, SINGULAR_VALUE_FLOOR) ** 2 * (U.T @ V))
         return velocity
 
-    return _within_ranges(leg, theta, velocity_of)
+    return _within_ranges(leg, theta, J, velocity_of)
 
 
-def _within_ranges(leg: LegKinematics, theta: Array, motion: Callable[[Mask], Array]) -> Array:
+def _within_ranges(leg: LegKinematics, theta: Array, J: Array, motion: Callable[[Array], Array]) -> Array:
     """Motion of the joints, shape (n,), in which no joint at the end of its range moves outward; those are held.
 
     Args:
         leg: the kinematic chain.
         theta: joint angles [rad].
-        motion: motion of the joints in a mask while the others are held.
+        J: Jacobian, shape (6, n).
+        motion: motion of the joints for a Jacobian; the columns of joints that are held are zero.
     """
-    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
-    free = np.ones(theta.size, dtype=bool)
+    free = np.ones(theta.size)
     while True:
-        result = np.zeros(theta.size)
-        if free.any():
-            result[free] = motion(free)
-        outward = (at_lower & (result < 0)) | (at_upper & (result > 0))
+        result = free * motion(free * J)
+        outward = ((theta <= leg.lower) & (result < 0)) | ((theta >= leg.upper) & (result > 0))
         if not outward.any():
             return result
-        free &= ~outward
+        free[outward] = 0.0
