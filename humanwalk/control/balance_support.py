@@ -1,12 +1,13 @@
 """The balance that the thesis assumes: a spring-damper between the pelvis and its walking reference."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from pydrake.common.eigen_geometry import AngleAxis, Quaternion
 
 from humanwalk.control.pd_control import StepImpedance, linear_update
 from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import quaternion_rotation_vector
 from humanwalk.numerics.stability import largest_stable_step
 from humanwalk.quantity import quantity
 
@@ -35,6 +36,16 @@ class BalanceSupportParameters:
     rotational_damping: float = quantity(270.0, "N m s/rad", 0.0, 1e4)
     """Torque per angular-velocity error."""
 
+    @cached_property
+    def K(self) -> Array:
+        """Stiffness of rotation, then translation, shape (6,) [N m/rad, N/m]."""
+        return np.repeat((self.rotational_stiffness, self.stiffness), 3)
+
+    @cached_property
+    def D(self) -> Array:
+        """Damping of rotation, then translation, shape (6,) [N m s/rad, N s/m]."""
+        return np.repeat((self.rotational_damping, self.damping), 3)
+
     def scaled(self, mass_factor: float, length_factor: float) -> "BalanceSupportParameters":
         """Scale the support to another body: forces with mass, torques with mass times length squared."""
         torque_factor = mass_factor * length_factor**2
@@ -61,13 +72,10 @@ def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: Balan
     Returns:
         [torque; force], shape (6,) [N m, N].
     """
-    q, q_d = Quaternion(q_WP[:4] / np.linalg.norm(q_WP[:4])), Quaternion(reference[:4])
-    rotation = AngleAxis(quaternion=q.multiply(q_d.inverse()))
-    translation, slip = q_WP[4:] - reference[4:7], V_WP - reference[7:]
-    torque = -parameters.rotational_stiffness * rotation.angle() * rotation.axis()
-    torque -= parameters.rotational_damping * slip[:3]
-    force = -parameters.stiffness * translation - parameters.damping * slip[3:]
-    return np.concatenate((torque, force))
+    rotation = quaternion_rotation_vector(reference[:4], q_WP[:4])
+    displacement = np.concatenate((rotation, q_WP[4:] - reference[4:7]))
+    wrench: Array = -parameters.K * displacement - parameters.D * (V_WP - reference[7:])
+    return wrench
 
 
 def largest_support_step(
@@ -84,12 +92,12 @@ def largest_support_step(
         parameters: the support.
         upper: longest step that is considered [s].
     """
-    stiffness = np.repeat((parameters.rotational_stiffness, parameters.stiffness), 3)
-    damping = np.repeat((parameters.rotational_damping, parameters.damping), 3)
-    K = np.concatenate((stiffness, kp))
+    K = np.concatenate((parameters.K, kp))
 
     def update(h: float) -> Array:
         implicit, explicit = impedance(h)
-        return linear_update(h, M, np.concatenate((np.zeros(6), implicit)), np.concatenate((h * damping, explicit)), K)
+        return linear_update(
+            h, M, np.concatenate((np.zeros(6), implicit)), np.concatenate((h * parameters.D, explicit)), K
+        )
 
     return largest_stable_step(update, upper)

@@ -19,13 +19,12 @@ def hermite(t: float, t0: float, x0: Array, t1: float, x1: Array) -> Array:
     Returns:
         [q; v] at t, shape (2n,).
     """
-    n = x1.size // 2
-    q0, v0, q1, v1 = x0[:n], x0[n:], x1[:n], x1[n:]
-    if t1 <= t0:
-        return np.concatenate((q1 + (t - t1) * v1, v1))
-    h = t1 - t0
-    inside = min(max(t, t0), t1)
-    s = (inside - t0) / h
-    q = (1 + 2 * s) * (1 - s) ** 2 * q0 + s**2 * (3 - 2 * s) * q1 + h * s * (1 - s) * ((1 - s) * v0 - s * v1)
-    v = 6 * s * (1 - s) / h * (q1 - q0) + (1 - s) * (1 - 3 * s) * v0 + s * (3 * s - 2) * v1
-    return np.concatenate((q + (t - inside) * v, v))
+    h, inside = t1 - t0, min(max(t, t0), t1)
+    s = (inside - t0) / h if h > 0 else 1.0
+    slope = 6 * s * (1 - s) / h if h > 0 else 0.0
+    # Factors of q0, v0, q1, v1 in q and in v.
+    q = ((1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), -h * s**2 * (1 - s))
+    v = (-slope, (1 - s) * (1 - 3 * s), slope, s * (3 * s - 2))
+    factors = np.array((q, v))
+    factors[0] += (t - inside) * factors[1]
+    return (factors @ np.concatenate((x0, x1)).reshape(4, -1)).ravel()

@@ -17,6 +17,19 @@ def rotation_vector(R_WA: Array, R_WB: Array) -> Array:
     return vector
 
 
+def quaternion_rotation_vector(q_WA: Array, q_WB: Array) -> Array:
+    """Axis times angle [rad], in W, of the rotation that turns frame A into frame B the shorter way; shape (3,).
+
+    Args:
+        q_WA, q_WB: quaternions wxyz, shape (4,), of any length and sign.
+    """
+    # q_WB times the conjugate of q_WA: [cosine; sine * axis] of half the angle.
+    cosine, sines = q_WA @ q_WB, q_WA[0] * q_WB[1:] - q_WB[0] * q_WA[1:] + cross_matrix(q_WA[1:]) @ q_WB[1:]
+    sine = math.hypot(*sines)
+    vector: Array = sines * (math.copysign(2.0, cosine) * math.atan2(sine, abs(cosine)) / sine if sine > 0 else 0.0)
+    return vector
+
+
 def yaw_pitch(yaw: float, pitch: float) -> Array:
     """Rz(yaw) Ry(pitch), shape (3, 3)."""
     c, s, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)

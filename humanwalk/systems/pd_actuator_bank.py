@@ -57,7 +57,8 @@ class PdActuatorBank(LeafSystem):
             ParameterError: the law is unstable at the plant's time step.
         """
         super().__init__()
-        self._joints = joints = JointMap.of(plant)
+        joints = JointMap.of(plant)
+        self._q, self._v = joints.q, joints.num_positions + joints.v
         self._kp, self._kd = kp, kd
         self._joint_damping = PD_LAWS[law].joint_damping(kd)
         self._effort_limits = joints.effort_limits if effort_limits is None else effort_limits
@@ -114,26 +115,19 @@ class PdActuatorBank(LeafSystem):
         held = self._held.Eval(context)
         return held[: self._kp.size], held[self._kp.size :]
 
-    def _feedforward_now(self, context: Context) -> Array:
-        if not self._feedforward.HasValue(context):
-            return np.zeros_like(self._kp)
-        feedforward: Array = self._feedforward.Eval(context)
-        return feedforward
+    def _feedforward_now(self, context: Context) -> Array | float:
+        return self._feedforward.Eval(context) if self._feedforward.HasValue(context) else 0.0
 
-    def _law(self, context: Context, state: Array) -> Array:
-        """The law without limits, shape (n,)."""
-        q, v = self._joints.positions(state), self._joints.velocities(state)
-        return pd_torque(q, v, *self._desired_now(context), self._kp, self._kd) + self._feedforward_now(context)
-
-    def _damping_in_plant(self, state: Array) -> Array:
-        """Torque that the damping of the plant's joints takes from the law, shape (n,)."""
-        damping: Array = self._joint_damping * self._joints.velocities(state)
-        return damping
+    def _law(self, context: Context) -> tuple[Array, Array]:
+        """The law without limits and the torque that the damping of the plant's joints takes from it, shape (n,)."""
+        state = self._state.Eval(context)
+        q, v = state[self._q], state[self._v]
+        tau = pd_torque(q, v, *self._desired_now(context), self._kp, self._kd) + self._feedforward_now(context)
+        return tau, self._joint_damping * v
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
-        state = self._state.Eval(context)
-        tau = np.clip(self._law(context, state), -self._effort_limits, self._effort_limits)
-        output.SetFromVector(tau + self._damping_in_plant(state))
+        tau, damping_in_plant = self._law(context)
+        output.SetFromVector(tau.clip(-self._effort_limits, self._effort_limits) + damping_in_plant)
 
     def _calc_plant_desired(self, context: Context, output: BasicVector) -> None:
         q_d, v_d = self._desired_now(context)
@@ -145,8 +139,9 @@ class PdActuatorBank(LeafSystem):
         output.SetFromVector(self._feedforward_now(context) + rate_torque)
 
     def _calc_torque(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._net_actuation.Eval(context) - self._damping_in_plant(self._state.Eval(context)))
+        damping_in_plant = self._joint_damping * self._state.Eval(context)[self._v]
+        output.SetFromVector(self._net_actuation.Eval(context) - damping_in_plant)
 
     def _calc_saturated(self, context: Context, output: BasicVector) -> None:
-        tau = self._law(context, self._state.Eval(context))
+        tau, _ = self._law(context)
         output.SetFromVector((np.abs(tau) >= self._effort_limits).astype(float))
