@@ -23,9 +23,8 @@ import numpy.typing as npt
 from matplotlib.ticker import LogLocator, NullLocator
 from pydrake.systems.framework import EventStatus
 
-from humanwalk.bench.cost import in_turns
+from humanwalk.bench.cost import TimedWalk, in_turns
 from humanwalk.bench.result import machine
-from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.body.joint_map import JointMap
 from humanwalk.files import write_text
 from humanwalk.measures.events import foot_events

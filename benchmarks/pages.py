@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from humanwalk.bench import read_result
-from humanwalk.bench.tables import COLUMNS
+from humanwalk.bench.result import COLUMNS
 from humanwalk.files import write_text
 
 ROOT = Path(__file__).parents[1]

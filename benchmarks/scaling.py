@@ -24,10 +24,9 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 
-from humanwalk.bench.cost import in_turns
+from humanwalk.bench.cost import TimedWalk, in_turns
 from humanwalk.bench.measure import ONE_THREAD
 from humanwalk.bench.result import machine
-from humanwalk.bench.timed_walk import TimedWalk
 from humanwalk.body import contact_spheres, sdf
 from humanwalk.body.contact import POINT_STIFFNESS, ContactSphere
 from humanwalk.body.plant import Subject
@@ -117,7 +116,7 @@ def add_human(plant: MultibodyPlant, subject: Subject, across: int) -> ModelInst
 _WORKER = """
 import logging, sys
 logging.getLogger("drake").setLevel(logging.ERROR)
-from humanwalk.bench.timed_walk import TimedWalk
+from humanwalk.bench.cost import TimedWalk
 from humanwalk.scenario import load_scenario
 walk = TimedWalk(load_scenario("thesis", {"duration": "10"}))
 print("ready", flush=True)

@@ -6,6 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.run.monitor import Monitor
+from humanwalk.run.simulate import Prepared, prepare
+from humanwalk.scenario import Scenario
+
 CHUNK = 0.1
 """Simulated time of one turn [s]: short, so that other load affects every simulation; ratios of costs measured by
 turns repeat within 2 to 3 %, those measured one after the other within 20 %."""
@@ -51,3 +55,37 @@ def in_turns(
         for name in list(advance)[:: -1 if turn % 2 else 1]:
             costs[name].append(advance[name](float(time_)))
     return costs
+
+
+class TimedWalk:
+    """An initialized simulation of a scenario, with the monitor that ends it at a fall.
+
+    Attributes:
+        prepared: Simulator, plant and recorder.
+    """
+
+    def __init__(self, scenario: Scenario, record: bool = True) -> None:
+        """Build and initialize it, with or without recording."""
+        self.prepared: Prepared = prepare(scenario, record=record)
+        self._monitor = Monitor(self.prepared.watched, scenario.terrain)
+        self.prepared.simulator.Initialize()
+
+    @property
+    def ended(self) -> str:
+        """Why the simulation ended, see Monitor; empty while it continues."""
+        return self._monitor.reason
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self.prepared.simulator.get_context().get_time())
+
+    def make_table(self) -> Cost:
+        """Make the table of the recorded signals; returns the cost."""
+        recorder = self.prepared.recorder
+        assert recorder is not None
+        return cost_of(lambda: recorder.table(self.prepared.simulator.get_context()))
+
+    def advance(self, until: float) -> Cost:
+        """Advance to a simulated time [s], unless it has ended; returns the cost."""
+        return cost_of(lambda: self._monitor.advance(self.prepared.simulator, until))

@@ -1,11 +1,16 @@
-"""The result of a benchmark, and its file."""
+"""The result of a benchmark, its file and its tables."""
 
 import json
 import os
 import platform
+import re
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+from rich import box
+from rich.table import Table
 
 from humanwalk.files import write_text
 from humanwalk.quantity import ParameterError, printable
@@ -98,16 +103,10 @@ class BenchFile(BenchResult):
 
 def machine() -> dict[str, Any]:
     """Processor, number of cores, their load over the last minute, and versions."""
-    return {"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg()[0]} | versions()
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or platform.machine()
+    info = Path("/proc/cpuinfo")
+    found = re.search(r"^model name\s*: (.*)", info.read_text(encoding="utf-8") if info.exists() else "", re.MULTILINE)
+    processor = found[1].strip() if found else platform.processor() or platform.machine()
+    return {"processor": processor, "cores": os.cpu_count(), "load": os.getloadavg()[0]} | versions()
 
 
 def write_result(path: Path, result: BenchResult) -> None:
@@ -132,3 +131,79 @@ def read_result(path: Path) -> BenchResult:
         if min(cost.wall, cost.cpu, cost.plant) <= 0.0:
             raise ParameterError(f"{printable(path)}: {name} takes no time; allowed: times above 0; measure again")
     return BenchResult(**data | {"scenarios": costs})
+
+
+Column = tuple[str, Callable[[ScenarioCost], float], str]
+
+COLUMNS: tuple[Column, ...] = (
+    ("wall", lambda cost: 1e3 * cost.wall, ".0f"),
+    ("cpu", lambda cost: 1e3 * cost.cpu, ".0f"),
+    ("plant", lambda cost: 1e3 * cost.plant, ".0f"),
+    ("IK/QP", lambda cost: 1e3 * cost.solvers, ".0f"),
+    ("other", lambda cost: 1e3 * cost.systems, ".0f"),
+    ("log", lambda cost: 1e3 * cost.logging, ".0f"),
+    ("above %", lambda cost: 100 * cost.above_plant, ".0f"),
+    ("x real", lambda cost: cost.realtime_factor, ".2f"),
+    ("start s", lambda cost: cost.startup_s, ".2f"),
+    ("MB", lambda cost: cost.peak_memory_MB, ".0f"),
+)
+"""Heading, value, format; times are milliseconds per simulated second. `above` is the cost of everything except the
+plant, in percent of it; `x real` is the real-time factor."""
+
+
+def cost_table(result: BenchResult) -> Table:
+    """Costs by scenario."""
+    on, part = result.machine, "" if result.complete else f", not complete: {result.progress}"
+    table = _table(
+        f"ms per simulated second, median of {result.repeats}{part}; {on['processor']}, load {on['load']:.1f}"
+    )
+    for name, cost in result.scenarios.items():
+        table.add_row(name, *(format(value(cost), form) for _, value, form in COLUMNS))
+    return table
+
+
+def system_table(result: BenchResult) -> Table:
+    """Time of our systems by scenario, most expensive first."""
+    table = Table("scenario", "our systems, ms per simulated second", box=box.SIMPLE_HEAD)
+    for name, cost in result.scenarios.items():
+        table.add_row(name, ", ".join(f"{system} {1e3 * seconds:.1f}" for system, seconds in cost.by_system.items()))
+    return table
+
+
+def ratios(old: BenchResult, new: BenchResult) -> dict[str, dict[str, float | None]]:
+    """Ratio new / old by scenario and column; None where the old value is not positive.
+
+    Raises:
+        ParameterError: No scenario is in both.
+    """
+    both = [name for name in old.scenarios if name in new.scenarios]
+    if not both:
+        raise ParameterError(
+            f"--compare: no scenario is in both, {', '.join(old.scenarios)} and {', '.join(new.scenarios)}; "
+            "allowed: results with a common scenario; measure the same"
+        )
+
+    def ratio(name: str, value: Callable[[ScenarioCost], float]) -> float | None:
+        before = value(old.scenarios[name])
+        return value(new.scenarios[name]) / before if before > 0 else None
+
+    return {name: {heading: ratio(name, value) for heading, value, _ in COLUMNS} for name in both}
+
+
+def comparison_table(old: BenchResult, new: BenchResult) -> Table:
+    """Ratios new / old by scenario; the title names differing conditions."""
+    before, after = (result.machine | {"settings": result.overrides} for result in (old, new))
+    differs = [name for name in before if name not in ("load", "humanwalk") and before[name] != after.get(name)]
+    differs += [f"{which} has {one.progress}" for which, one in (("old", old), ("new", new)) if not one.complete]
+    table = _table("new / old" + (f"; different conditions: {', '.join(differs)}" if differs else ""))
+    for name, row in ratios(old, new).items():
+        table.add_row(name, *("-" if value is None else format(value, ".2f") for value in row.values()))
+    return table
+
+
+def _table(title: str) -> Table:
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table.add_column("scenario", no_wrap=True)
+    for heading, _, _ in COLUMNS:
+        table.add_column(heading, justify="right")
+    return table

@@ -86,13 +86,11 @@ def bench(
 ) -> None:
     """Measure the cost of scenarios: plant, solvers, other systems, logging, start-up, memory."""
     from humanwalk.bench import bench as measure
-    from humanwalk.bench import read_result, write_result
-    from humanwalk.bench.tables import comparison_table
+    from humanwalk.bench.result import comparison_table, read_result, write_result
     from humanwalk.scenario import shipped_scenarios
 
     if compare is not None:
-        old, new = map(read_result, compare)
-        stdout.print(comparison_table(old, new))
+        stdout.print(comparison_table(*map(read_result, compare)))
         return
     if json_file is not None and not json_file.parent.is_dir():
         raise ParameterError(f"--output {json_file}: no such folder; allowed: a file in an existing folder; make it")
@@ -123,7 +121,7 @@ def bench(
 
 
 def _print_result(result: "BenchResult | None", json_file: Path | None) -> None:
-    from humanwalk.bench.tables import cost_table, system_table
+    from humanwalk.bench.result import cost_table, system_table
 
     if result is None:
         return

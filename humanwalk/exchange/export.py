@@ -2,14 +2,48 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from pyarrow import csv
+from scipy.io import savemat
 
 from humanwalk.exchange.c3d import write_c3d
-from humanwalk.exchange.csv import write_csv
-from humanwalk.exchange.mat import write_mat
 from humanwalk.exchange.opensim import write_opensim
-from humanwalk.files import make_folder
+from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
+from humanwalk.scenario import dump_scenario
+
+
+def write_csv(run: Run, folder: Path) -> list[Path]:
+    """Write signals.csv: one row per sample, one column per signal, units in the column names, all digits.
+
+    No cell is a formula to a spreadsheet: values are numbers, and column names begin with a letter (`read_signals`).
+    """
+    path = folder / "signals.csv"
+    write_whole(path, lambda beside: csv.write_csv(run.signals, beside))
+    return [path]
+
+
+def write_mat(run: Run, folder: Path) -> list[Path]:
+    """Write run.mat for MATLAB and Octave.
+
+    `signals.JOINT.angle_rad` is the signal of that name, a column vector; `signals.time_s` is the time, and `scenario`
+    the text of the scenario.
+    """
+    signals: dict[str, Any] = {}
+    for name in run.signals.column_names:
+        thing, dot, quantity = name.partition(".")
+        values = run.signals[name].to_numpy()
+        if dot:
+            signals.setdefault(thing, {})[quantity] = values
+        else:
+            signals[name] = values
+    data = {"signals": signals, "scenario": dump_scenario(run.scenario)}
+    path = folder / "run.mat"
+    write_whole(path, lambda beside: savemat(beside, data, long_field_names=True, oned_as="column"))
+    return [path]
+
 
 NEED_PHYSICS = ("opensim", "c3d")
 """Formats that contain forces."""

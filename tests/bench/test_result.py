@@ -15,8 +15,7 @@ from rich.console import Console
 from humanwalk.bench import BenchResult, ScenarioCost, measure, read_result, write_result
 from humanwalk.bench.measure import bench, put_together
 from humanwalk.bench.profile import UPSTREAM
-from humanwalk.bench.result import machine
-from humanwalk.bench.tables import COLUMNS, comparison_table, cost_table, ratios, system_table
+from humanwalk.bench.result import COLUMNS, comparison_table, cost_table, machine, ratios, system_table
 from humanwalk.quantity import ParameterError
 
 
