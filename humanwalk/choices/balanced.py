@@ -117,6 +117,7 @@ class BalancedController:
             "planner",
             GaitPlanner(world.model, self.planner, self.first_swing, self.control_period, world.terrain),
             state=world.state,
+            com=world.port("body_observer", "com"),
             foot_forces=world.port("foot_contact", "foot_forces"),
             command=command.GetOutputPort("command"),
         )

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +21,7 @@ from humanwalk.walking.walking_reference import BodyState, FootState
 
 BY_V = JacobianWrtVariable.kV
 ORIGIN = np.zeros(3)
+Vector = Sequence[float]
 
 
 class PointMotion(NamedTuple):
@@ -54,8 +54,7 @@ class FrameMotion(NamedTuple):
         return PointMotion(self.p_WB + r, to_P @ self.J, to_P @ self.V_WB, to_P @ self.bias + w @ (w @ r))
 
 
-@dataclass(frozen=True)
-class Dynamics:
+class Dynamics(NamedTuple):
     """The body at one state; M v' + h = tau + J' f, with gravity and damping in h.
 
     Attributes:
@@ -136,37 +135,37 @@ class BodyDynamics:
         )
         return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
 
-    def body_state(self, state: Array, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
+    def body_state(self, state: Array, com: Array, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
         """The measured state for the step planner.
 
         Args:
             state: plant state [q; v].
+            com: position [m] and velocity [m/s] of the center of mass in W, (6,).
             foot_forces: vertical ground reaction forces [N].
             terrain: relative to its axes are yaw and pitch of the feet.
         """
-        plant, context = self.plant, self._context
-        plant.SetPositionsAndVelocities(context, state)
-        x, y, z = plant.CalcCenterOfMassPositionInWorld(context)
-        vx, vy, _ = plant.CalcCenterOfMassTranslationalVelocityInWorld(context)
-        right, left = (self._foot_state(side, foot_forces[side], terrain) for side in SIDES)
-        return BodyState(complex(x, y), complex(vx, vy), float(z), right, left)
+        self.plant.SetPositionsAndVelocities(self._context, state)
+        ankles = [self._ankles[side] for side in SIDES]
+        X_WF = np.array([ankle.CalcPoseInWorld(self._context).GetAsMatrix34() for ankle in ankles])
+        V_WF = np.array([ankle.CalcSpatialVelocityInWorld(self._context).get_coeffs() for ankle in ankles])
+        R_SW = terrain.axes(X_WF[:, :2, 3])
+        forward_S, w_S = np.matvec(R_SW, X_WF[:, :, 0]), np.matvec(R_SW, V_WF[:, :3])
+        motions = (part.tolist() for part in (X_WF[:, :, 3], V_WF[:, 3:], forward_S, w_S))
+        forces = (foot_forces[side] for side in SIDES)
+        x, y, z, vx, vy, _ = com.tolist()
+        return BodyState(complex(x, y), complex(vx, vy), z, *map(_foot_state, *motions, forces))
 
-    def _foot_state(self, side: Side, force: float, terrain: Terrain) -> FootState:
-        ankle = self._ankles[side]
-        X_WF, V_WF = ankle.CalcPoseInWorld(self._context), ankle.CalcSpatialVelocityInWorld(self._context)
-        x, y, z = X_WF.translation().tolist()
-        vx, vy, vz = V_WF.translational().tolist()
-        R_SW = terrain.axes(np.array((x, y)))
-        forward = (R_SW @ X_WF.rotation().matrix())[:, 0]
-        yaw = math.atan2(forward[1], forward[0])
-        pitch_axis = np.array((-math.sin(yaw), math.cos(yaw), 0.0))
-        return FootState(
-            position=complex(x, y),
-            velocity=complex(vx, vy),
-            height=z,
-            height_rate=vz,
-            yaw=yaw,
-            pitch=math.asin(clip(-forward[2], -1.0, 1.0)),
-            pitch_rate=float(pitch_axis @ R_SW @ V_WF.rotational()),
-            force=force,
-        )
+
+def _foot_state(p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float) -> FootState:
+    """A foot from position and velocity of its ankle in W, and x axis and angular velocity in the terrain's axes."""
+    yaw = math.atan2(forward_S[1], forward_S[0])
+    return FootState(
+        position=complex(p[0], p[1]),
+        velocity=complex(v[0], v[1]),
+        height=p[2],
+        height_rate=v[2],
+        yaw=yaw,
+        pitch=math.asin(clip(-forward_S[2], -1.0, 1.0)),
+        pitch_rate=math.cos(yaw) * w_S[1] - math.sin(yaw) * w_S[0],
+        force=force,
+    )

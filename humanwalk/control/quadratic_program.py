@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import daqp
 import numpy as np
+from scipy.linalg.lapack import dtrtri
 
 from humanwalk.numerics import Array
 
@@ -35,11 +36,12 @@ class QuadraticProgram(NamedTuple):
             return None
         # DAQP inverts its Hessian in plain loops, which takes longer than the rest of the solution. In y, where a = T y
         # and T' H T = 1, it is the identity; the bounds of a become rows, those of f remain bounds of variables.
-        T = np.linalg.inv(np.linalg.cholesky(self.H)).T
+        T = dtrtri(np.linalg.cholesky(self.H), lower=True)[0].T
         m, k = self.H.shape[0], self.B.shape[1]
+        constraints = np.zeros((m + len(self.A), k + m))
+        constraints[:m, k:], constraints[m:, :k], constraints[m:, k:] = T, self.B, self.A @ T
         cost = np.concatenate((np.zeros(k), self.g @ T))
-        constraints = np.block([[np.zeros((m, k)), T], [self.B, self.A @ T]])
-        sense = np.where(self.lower == self.upper, EQUALITY, 0).astype(np.int32)
+        sense = np.multiply(self.lower == self.upper, EQUALITY, dtype=np.int32)
         x, _, flag, _ = daqp.solve(
             np.eye(k + m), cost, constraints, self.upper, self.lower, sense, iter_limit=MAX_ITERATIONS
         )

@@ -31,6 +31,7 @@ class GaitPlanner(LeafSystem):
 
     Inputs:
         state: plant state [q; v].
+        com: (6) see BodyObserver.
         foot_forces: (16) see FootForceObserver.
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
 
@@ -76,6 +77,7 @@ class GaitPlanner(LeafSystem):
         )
         self._step_duration = parameters.timing.step
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        self._com = self.DeclareVectorInputPort("com", 6)
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
         self._memory = self.DeclareAbstractState(Value[object]())
@@ -109,7 +111,7 @@ class GaitPlanner(LeafSystem):
     def _body(self, context: Context) -> BodyState:
         forces = self._foot_forces.Eval(context)
         vertical = {side: float(forces[FOOT_FORCE_Z[side]]) for side in SIDES}
-        return self._dynamics.body_state(self._state.Eval(context), vertical, self._terrain)
+        return self._dynamics.body_state(self._state.Eval(context), self._com.Eval(context), vertical, self._terrain)
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)

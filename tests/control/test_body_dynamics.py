@@ -60,7 +60,7 @@ def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
     X_WP = pelvis.EvalPoseInWorld(context)
     X_WP.set_rotation(type(X_WP.rotation())(R_WF))
     plant.SetFreeBodyPose(context, pelvis, X_WP)
-    body = dynamics.body_state(plant.GetPositionsAndVelocities(context), NO_FORCES, terrain)
+    body = dynamics.body_state(plant.GetPositionsAndVelocities(context), np.zeros(6), NO_FORCES, terrain)
     for foot in (body.right, body.left):
         assert (foot.yaw, foot.pitch) == pytest.approx((yaw, pitch), abs=1e-9)
         assert foot.pitch_rate == pytest.approx(0.0, abs=1e-9)

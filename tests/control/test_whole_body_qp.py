@@ -167,7 +167,7 @@ def test_an_infeasible_program_has_no_solution_and_does_not_affect_the_next(
 ) -> None:
     qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
     body = body_at(dynamics)
-    broken = replace(body, h=body.h + 1e6)
+    broken = body._replace(h=body.h + 1e6)
     assert qp.solve(broken, reference_for(body), rest(qp)) is None
     assert qp.solve(body, reference_for(body), rest(qp)) is not None
 

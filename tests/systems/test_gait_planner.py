@@ -22,7 +22,10 @@ def planner(plant: MultibodyPlant) -> GaitPlanner:
 def simulator_of(planner: GaitPlanner, plant: MultibodyPlant, command: tuple[float, ...]) -> Simulator:
     simulator = Simulator(planner)
     context = simulator.get_mutable_context()
-    planner.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
+    standing = plant.CreateDefaultContext()
+    planner.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(standing))
+    com = np.concatenate((plant.CalcCenterOfMassPositionInWorld(standing), np.zeros(3)))
+    planner.GetInputPort("com").FixValue(context, com)
     planner.GetInputPort("foot_forces").FixValue(context, np.zeros(16))
     planner.GetInputPort("command").FixValue(context, np.array(command, dtype=float))
     simulator.Initialize()
@@ -33,6 +36,7 @@ def test_ports(planner: GaitPlanner, plant: MultibodyPlant) -> None:
     inputs = [planner.get_input_port(i) for i in range(planner.num_input_ports())]
     assert [(port.get_name(), port.size()) for port in inputs] == [
         ("state", plant.num_multibody_states()),
+        ("com", 6),
         ("foot_forces", 16),
         ("command", 3),
     ]

@@ -37,7 +37,8 @@ def standing(plant: MultibodyPlant, joints: JointMap) -> Array:
 
 @pytest.fixture
 def plan(controller: WholeBodyController, standing: Array) -> WalkingReference:
-    body = controller._dynamics.body_state(standing, {"Right": 350.0, "Left": 350.0}, Plane())
+    com = np.concatenate((controller._dynamics.at(standing).com.position, np.zeros(3)))
+    body = controller._dynamics.body_state(standing, com, {"Right": 350.0, "Left": 350.0}, Plane())
     planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
     return planner.update(planner.start(body), body, Command())[1]
 
