@@ -6,8 +6,6 @@ here is what the thesis leaves open: the 20.28 kg that it does not assign to a b
 side and mirrored.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -5,8 +5,6 @@ distinguished by `POINT_SET` and `HYDRO_SET` in their names; a diagram filters o
 if the thesis' contact law acts on the lower faces of the boxes. The lowest points of all shapes are on the sole plane.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,14 +117,8 @@ def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
             for place, outward in (("medial", -1.0), ("lateral", 1.0)):
                 y = leftward * outward * part.spheres_half_gap * scale
                 body = f"{side}Leg_{part.body}"
-                spheres.append(
-                    ContactSphere(
-                        name=f"{side}Leg{POINT_SET}{part.name}_{place}",
-                        body=body,
-                        center=_in_body(skeleton, side, body, (part.spheres_x * scale, y, radius)),
-                        radius=radius,
-                    )
-                )
+                center = _in_body(skeleton, side, body, (part.spheres_x * scale, y, radius))
+                spheres.append(ContactSphere(f"{side}Leg{POINT_SET}{part.name}_{place}", body, center, radius))
     return tuple(spheres)
 
 
@@ -139,14 +131,9 @@ def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
         for part in SOLE_PARTS:
             back, front = part.x[0] * scale, part.x[1] * scale
             body = f"{side}Leg_{part.body}"
-            boxes.append(
-                ContactBox(
-                    name=f"{side}Leg{HYDRO_SET}{part.name}",
-                    body=body,
-                    center=_in_body(skeleton, side, body, ((back + front) / 2, 0.0, height / 2)),
-                    size=(front - back, part.width * scale, height),
-                )
-            )
+            center = _in_body(skeleton, side, body, ((back + front) / 2, 0.0, height / 2))
+            size = (front - back, part.width * scale, height)
+            boxes.append(ContactBox(f"{side}Leg{HYDRO_SET}{part.name}", body, center, size))
     return tuple(boxes)
 
 

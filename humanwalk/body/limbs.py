@@ -3,8 +3,6 @@
 Code outside `humanwalk.body` refers to joints and bodies by these roles.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from humanwalk.body.anatomy import human
@@ -42,7 +40,7 @@ class Leg:
     sole: str
 
     @staticmethod
-    def of(side: Side) -> Leg:
+    def of(side: Side) -> "Leg":
         """Return the leg of a side."""
         joints = (
             *("Femur", "FemurSide", "FemurTwist", "Tibia", "Ankle", "AnkleRoll", "AnkleTwist"),
@@ -89,7 +87,7 @@ class Arm:
     wrist: str
 
     @staticmethod
-    def of(side: Side) -> Arm:
+    def of(side: Side) -> "Arm":
         """Return the arm of a side."""
         joints = ("Shoulder", "ShoulderSide", "ShoulderTwist", "Elbow", "Wrist")
         return Arm(side, *(f"{side}Arm{joint}Motion" for joint in joints))

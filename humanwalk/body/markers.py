@@ -6,9 +6,7 @@ from Plug-in-Gait; their names follow the same pattern. Positions are on the ski
 (`humanwalk.body.visuals`) or at the level of its joint centers, and are proportional to stature.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from humanwalk.body.anatomy import REFERENCE_STATURE, human
 from humanwalk.body.skeleton import Skeleton, Vector3
@@ -32,17 +30,15 @@ class Marker:
     landmark: str
     plug_in_gait: bool = True
 
-    def mirrored(self) -> Marker:
+    def mirrored(self) -> "Marker":
         """Return the left counterpart of a right marker."""
         x, y, z = self.position
-        return Marker(
-            f"L{self.name[1:]}", self.body.replace("Right", "Left"), (x, -y, z), self.landmark, self.plug_in_gait
-        )
+        return replace(self, name=f"L{self.name[1:]}", body=self.body.replace("Right", "Left"), position=(x, -y, z))
 
-    def scaled(self, factor: float) -> Marker:
+    def scaled(self, factor: float) -> "Marker":
         """Return the marker on a body with every length multiplied by a factor."""
         x, y, z = self.position
-        return Marker(self.name, self.body, (x * factor, y * factor, z * factor), self.landmark, self.plug_in_gait)
+        return replace(self, position=(x * factor, y * factor, z * factor))
 
 
 def markers(skeleton: Skeleton) -> tuple[Marker, ...]:

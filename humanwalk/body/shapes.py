@@ -3,8 +3,6 @@
 They define inertia, not appearance: their densities are 0.2 to 1.6 g/cm3 (erratum E7).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 
@@ -42,7 +40,7 @@ class Box:
         squares = self.extent**2
         return mass / 12.0 * (squares.sum() - squares)
 
-    def scaled(self, factor: float) -> Box:
+    def scaled(self, factor: float) -> "Box":
         """Return the box with every length multiplied by a factor."""
         return Box(self.depth * factor, self.width * factor, self.height * factor)
 
@@ -76,7 +74,7 @@ class Cylinder:
         transverse = mass * (3.0 * self.radius**2 + self.length**2) / 12.0
         return np.array([axial if a == self.axis else transverse for a in "xyz"])
 
-    def scaled(self, factor: float) -> Cylinder:
+    def scaled(self, factor: float) -> "Cylinder":
         """Return the cylinder with every length multiplied by a factor."""
         return Cylinder(self.radius * factor, self.length * factor, self.axis)
 

@@ -5,8 +5,6 @@ defined for the right side and mirrored. Balls at knees and elbows close the gap
 right is blue (shoes, sleeve cuffs, trouser stripes).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -60,21 +58,20 @@ class Visual:
         """Name in the model file, unique in the model."""
         return f"{self.body}_{self.part}"
 
-    def mirrored(self) -> Visual:
+    def mirrored(self) -> "Visual":
         """Return the left counterpart of a right part, in the color of its side."""
         x, y, z = self.center
         roll, pitch, yaw = self.rpy
-        own = self.color == SIDE_COLORS["Right"]
         return replace(
             self,
             body=self.body.replace("Right", "Left"),
             part=self.part.replace("right", "left"),
             center=(x, -y, z),
             rpy=(-roll, pitch, -yaw),
-            color=SIDE_COLORS["Left"] if own else self.color,
+            color=SIDE_COLORS["Left"] if self.color == SIDE_COLORS["Right"] else self.color,
         )
 
-    def scaled(self, factor: float) -> Visual:
+    def scaled(self, factor: float) -> "Visual":
         """Return the part with every length multiplied by a factor."""
         x, y, z = self.center
         return replace(self, size=tuple(s * factor for s in self.size), center=(x * factor, y * factor, z * factor))
@@ -84,8 +81,7 @@ def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
     """Return all primitives of a body, in body frames, scaled to its stature."""
     scale = skeleton.stature / REFERENCE_STATURE
     paired = [*_right_trunk_half(), *_right_face_half(), *_right_leg(), *_right_arm()]
-    middle = [*_trunk(), *_head()]
-    return tuple(v.scaled(scale) for v in (*middle, *paired, *(v.mirrored() for v in paired)))
+    return tuple(v.scaled(scale) for v in (*_trunk(), *_head(), *paired, *(v.mirrored() for v in paired)))
 
 
 def ellipsoid(body: str, part: str, center: Vector3, radii: Vector3, color: Color, rpy: Vector3 = (0, 0, 0)) -> Visual:
@@ -116,8 +112,7 @@ def _trunk() -> Iterator[Visual]:
     yield ellipsoid("Pelvis", "buckle", (0.104, 0, 0.088), (0.008, 0.02, 0.014), SHIRT)
     # Tall and overlapping, so that the waist is smooth both upright and bent.
     for level in (6, 5, 4, 3, 2, 1):
-        height = 0.14 if level == 6 else 0.17
-        radii = (0.106, 0.150 - 0.001 * level, height)
+        radii = (0.106, 0.150 - 0.001 * level, 0.14 if level == 6 else 0.17)
         yield ellipsoid(f"Lumbar_{level}", "waist", (0.0, 0, 0.022), radii, SHIRT)
     yield ellipsoid("Thoracic_10_12", "waist", (0.0, 0, 0.02), (0.110, 0.155, 0.17), SHIRT)
     yield ellipsoid("Ribs", "chest", (0.0, 0, 0.035), (0.116, 0.168, 0.185), SHIRT)
@@ -128,12 +123,9 @@ def _trunk() -> Iterator[Visual]:
 
 
 def _right_trunk_half() -> Iterator[Visual]:
-    buttock = (0.085, 0.085, 0.095)
-    yield ellipsoid("Pelvis", "right_buttock", (-0.042, -0.072, -0.018), buttock, TROUSERS)
-    slope = (0.062, 0.150, 0.048)
-    yield ellipsoid("Thoracic_1_3", "right_slope", (-0.012, -0.095, 0.012), slope, SHIRT, (0.33, 0, 0))
-    cap = (0.060, 0.095, 0.056)
-    yield ellipsoid("Scapula", "right_cap", (-0.004, -0.178, -0.014), cap, SHIRT, (0.25, 0, 0))
+    yield ellipsoid("Pelvis", "right_buttock", (-0.042, -0.072, -0.018), (0.085, 0.085, 0.095), TROUSERS)
+    yield ellipsoid("Thoracic_1_3", "right_slope", (-0.012, -0.095, 0.012), (0.062, 0.150, 0.048), SHIRT, (0.33, 0, 0))
+    yield ellipsoid("Scapula", "right_cap", (-0.004, -0.178, -0.014), (0.060, 0.095, 0.056), SHIRT, (0.25, 0, 0))
 
 
 def _head() -> Iterator[Visual]:
@@ -144,8 +136,7 @@ def _head() -> Iterator[Visual]:
     yield ellipsoid("Head", "face", (0.030, 0, 0.020), (0.070, 0.067, 0.105), SKIN)
     yield ellipsoid("Head", "chin", (0.054, 0, -0.060), (0.028, 0.034, 0.026), SKIN)
     yield ellipsoid("Head", "nose", (0.103, 0, 0.005), (0.015, 0.011, 0.013), SKIN)
-    bridge = (0.009, 0.0075, 0.028)
-    yield ellipsoid("Head", "nose_bridge", (0.098, 0, 0.022), bridge, SKIN, (0, -0.25, 0))
+    yield ellipsoid("Head", "nose_bridge", (0.098, 0, 0.022), (0.009, 0.0075, 0.028), SKIN, (0, -0.25, 0))
     yield ellipsoid("Head", "mouth", (0.0890, 0, -0.032), (0.006, 0.021, 0.0055), LIPS)
     yield ellipsoid("Head", "hair", (-0.012, 0, 0.060), (0.094, 0.081, 0.083), HAIR)
     yield ellipsoid("Head", "hair_top", (0.012, 0, 0.085), (0.085, 0.075, 0.060), HAIR)
@@ -155,12 +146,9 @@ def _head() -> Iterator[Visual]:
 def _right_face_half() -> Iterator[Visual]:
     yield ball("Head", "right_eye", (0.0815, -0.030, 0.026), 0.0130, EYE_WHITE)
     yield ball("Head", "right_iris", (0.0888, -0.0303, 0.026), 0.0065, IRIS)
-    lid = (0.0133, 0.0145, 0.0085)
-    yield ellipsoid("Head", "right_lid", (0.0818, -0.030, 0.0345), lid, SKIN)
-    brow = (0.006, 0.018, 0.0035)
-    yield ellipsoid("Head", "right_brow", (0.0895, -0.031, 0.046), brow, HAIR, (0.1, 0, -0.35))
-    ear = (0.018, 0.009, 0.030)
-    yield ellipsoid("Head", "right_ear", (0.006, -0.076, 0.008), ear, SKIN, (0, -0.15, 0.3))
+    yield ellipsoid("Head", "right_lid", (0.0818, -0.030, 0.0345), (0.0133, 0.0145, 0.0085), SKIN)
+    yield ellipsoid("Head", "right_brow", (0.0895, -0.031, 0.046), (0.006, 0.018, 0.0035), HAIR, (0.1, 0, -0.35))
+    yield ellipsoid("Head", "right_ear", (0.006, -0.076, 0.008), (0.018, 0.009, 0.030), SKIN, (0, -0.15, 0.3))
 
 
 def _right_leg() -> Iterator[Visual]:
@@ -180,10 +168,8 @@ def _right_leg() -> Iterator[Visual]:
     yield ellipsoid(shank, "knee", (0.003, 0, -0.01), (0.056, 0.055, 0.075), TROUSERS)
     yield from _striped(shank, "calf", (-0.010, 0, -0.13), (0.060, 0.055, 0.20))
     yield from _striped(shank, "lower_shank", (-0.005, 0, -0.21), (0.052, 0.050, 0.18))
-    hem = (0.043, 0.165)
-    yield Visual(shank, "hem", "cylinder", hem, (-0.002, 0, -0.3225), (0, 0, 0), TROUSERS)
-    strip = (-0.002, -0.0385)
-    yield capsule(shank, "hem_stripe", (*strip, -0.26), (*strip, -0.398), 0.0065, side)
+    yield Visual(shank, "hem", "cylinder", (0.043, 0.165), (-0.002, 0, -0.3225), (0, 0, 0), TROUSERS)
+    yield capsule(shank, "hem_stripe", (-0.002, -0.0385, -0.26), (-0.002, -0.0385, -0.398), 0.0065, side)
     yield capsule(shank, "ankle", (-0.002, 0, -0.36), ankle, 0.035, SKIN)
 
     heel, middle, toes = "RightLeg_Ankle", "RightLeg_FootMiddle", "RightLeg_FootToes"
@@ -234,8 +220,7 @@ def _right_arm() -> Iterator[Visual]:
     upper = "RightArm_Humor_Upper_Arm"
     yield ellipsoid(upper, "shoulder", (0, 0.018, -0.014), (0.059, 0.056, 0.062), SHIRT)
     yield ellipsoid(upper, "sleeve", (0, 0.008, -0.07), (0.055, 0.052, 0.125), SHIRT)
-    cuff = (0.0505, 0.02)
-    yield Visual(upper, "cuff", "cylinder", cuff, (0, 0.006, -0.125), (0, 0, 0), side)
+    yield Visual(upper, "cuff", "cylinder", (0.0505, 0.02), (0, 0.006, -0.125), (0, 0, 0), side)
     yield ellipsoid(upper, "biceps", (0.004, 0.003, -0.15), (0.046, 0.043, 0.14), SKIN)
     yield capsule(upper, "arm", (0, 0, -0.18), elbow, 0.036, SKIN)
     yield ball(upper, "elbow", elbow, 0.0385, SKIN)
@@ -248,12 +233,8 @@ def _right_arm() -> Iterator[Visual]:
     hand = "RightArm_Hand"
     yield ellipsoid(hand, "wrist", (0, 0, -0.005), (0.027, 0.022, 0.03), SKIN)
     yield ellipsoid(hand, "palm", (0, 0.001, -0.052), (0.042, 0.018, 0.052), SKIN)
-    for finger, x, length in (
-        ("little", -0.029, 0.046),
-        ("ring", -0.010, 0.062),
-        ("middle", 0.009, 0.067),
-        ("index", 0.028, 0.058),
-    ):
+    fingers = (("little", -0.029, 0.046), ("ring", -0.010, 0.062), ("middle", 0.009, 0.067), ("index", 0.028, 0.058))
+    for finger, x, length in fingers:
         knuckle = (0.95 * x, 0.002, -0.088)
         bend = (x, 0.008, -0.088 - 0.55 * length)
         tip = (0.95 * x, 0.022, -0.088 - length)

@@ -1,7 +1,5 @@
 """The actuation of the joints: how a command becomes torque."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -46,18 +44,15 @@ class PdActuation:
     """Saturate at the body's effort limits, or at nothing, as in the thesis."""
 
     def install(self, plant: MultibodyPlant, kp: Array, kd: Array) -> None:
-        """See `Actuation`."""
         if self.effort_limits == "none":
             for i in range(plant.num_actuators()):
                 plant.get_mutable_joint_actuator(JointActuatorIndex(i)).set_effort_limit(np.inf)
         install_gains(plant, kp, kd, self.law)
 
     def step_impedance(self, step: float, kp: Array, kd: Array) -> tuple[Array, Array]:
-        """See `Actuation`."""
         return PD_LAWS[self.law].impedance(step, kp, kd)
 
     def add_to(self, world: World) -> None:
-        """See `Actuation`."""
         plant, builder = world.plant, world.builder
         limits = JointMap.of(world.model).effort_limits
         if self.effort_limits == "none":

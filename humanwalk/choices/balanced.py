@@ -1,7 +1,5 @@
 """The controller that balances: step planner and whole-body program, no external force."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 
@@ -78,7 +76,6 @@ class BalancedController:
 
     @property
     def commanded_speed(self) -> float:
-        """See `Controller`."""
         return max((point.forward for point in self.command.points), key=abs, default=0.0)
 
     def steady_from(self, subject: Subject) -> float:
@@ -90,7 +87,6 @@ class BalancedController:
         return first.time + self.planner.timing.weight_shift + ramp + SETTLING
 
     def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        """See `Controller`."""
         gains = self.gains
         foot = np.isin(JointMap.of(model).names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
         return np.where(foot, gains.foot_stiffness, 0.0), np.where(foot, gains.foot_damping, gains.damping)

@@ -1,7 +1,5 @@
 """The contact of feet and ground: Drake's point or hydroelastic contact, or the thesis' asperity law."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -79,26 +77,17 @@ class HydroelasticContact(_DrakeContact):
     unused_sets = (POINT_SET,)
 
     def ground_properties(self, friction: float) -> ProximityProperties:
-        """See `Contact`."""
         return ground_properties(friction, hydroelastic=True)
 
 
 @dataclass(frozen=True)
-class AsperityContactModel(AsperityParameters):
+class AsperityContactModel(_DrakeContact, AsperityParameters):
     """The thesis' normal penalty and asperity friction on the soles' lower faces; Drake collides no foot."""
-
-    leg_contact: bool = True
-    """Whether one leg stops the other; else they pass through each other."""
 
     model = ContactModel.kPoint
     unused_sets = (HYDRO_SET, POINT_SET)
 
-    def ground_properties(self, friction: float) -> ProximityProperties:
-        """See `Contact`."""
-        return ground_properties(friction)
-
     def add_to(self, world: World) -> None:
-        """See `Contact`."""
         if world.plant.time_step() == 0:
             raise ParameterError(
                 "contact: asperity needs the discrete plant, whose step its forces are implicit in; allowed: with "

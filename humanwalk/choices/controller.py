@@ -1,7 +1,5 @@
 """What every controller is: it knows its gains and its start, and turns the world's state into a command."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 

@@ -1,7 +1,5 @@
 """The controller that follows recorded joint angles, with the pelvis supported, or without physics."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,7 +53,6 @@ class RecordedController:
 
     @property
     def physics(self) -> bool:
-        """See `Controller`."""
         return not self.kinematic
 
     def steady_from(self, subject: Subject) -> float:
@@ -63,7 +60,6 @@ class RecordedController:
         return self.ease_in
 
     def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        """See `Controller`."""
         return joint_gains(model, self.gains)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
@@ -83,7 +79,6 @@ class RecordedController:
         return Command(desired_state)
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
-        """See `Controller`."""
         source = world.add("recording", RecordedPostureSource(self.motion(world.subject, world.terrain)))
         return source.GetOutputPort("pelvis_reference"), source.GetOutputPort("desired_state")
 

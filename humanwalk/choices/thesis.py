@@ -1,7 +1,5 @@
 """The thesis' controller: foot paths by splines, inverse kinematics of the legs, assumed balance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 
@@ -81,7 +79,6 @@ class ThesisController:
 
     @property
     def commanded_speed(self) -> float:
-        """See `Controller`."""
         return self.gait.ramp.speed
 
     def steady_from(self, subject: Subject) -> float:
@@ -89,7 +86,6 @@ class ThesisController:
         return float(max(self.gait.ramp.duration, self.walk(subject).start_time))
 
     def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        """See `Controller`."""
         return joint_gains(model, self.gains)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
@@ -130,7 +126,6 @@ class ThesisController:
         )
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
-        """See `Controller`."""
         gait, arms, solver = self._add_source(world)
         world.builder.Connect(gait.GetOutputPort("sole_targets"), solver.GetInputPort("sole_targets"))
         world.builder.Connect(arms.GetOutputPort("posture"), solver.GetInputPort("posture"))

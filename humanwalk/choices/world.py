@@ -1,7 +1,5 @@
 """The world that a walker lives in: body, plant and terrain in a diagram under construction."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from pydrake.geometry import SceneGraph

@@ -10,8 +10,6 @@ in e, is
 Every function takes any number of contact points at once.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -92,24 +90,13 @@ class AsperityParameters:
 
 
 def point_stiffness(parameters: AsperityParameters, area: Array) -> Array:
-    """Return the stiffness of n points along the surface's axes x, y and its normal [N/m], shape (n, 3).
-
-    Args:
-        parameters: Of the law.
-        area: Area of each point [m2], shape (n,).
-    """
+    """Return the stiffness of n points with areas [m2], shape (n,), along the surface's x, y, normal [N/m], (n, 3)."""
     tangential = parameters.spring_stiffness
     return np.outer(area, (tangential, tangential, parameters.normal_stiffness))
 
 
 def point_damping(parameters: AsperityParameters, area: Array, rising: bool = False) -> Array:
-    """Return the damping of n points along the surface's axes x, y and its normal [N s/m], shape (n, 3).
-
-    Args:
-        parameters: Of the law.
-        area: Area of each point [m2], shape (n,).
-        rising: Whether the points move away from the surface.
-    """
+    """Return the damping of n points like `point_stiffness` [N s/m]; `rising` points move away from the surface."""
     tangential = parameters.velocity_stiffness
     normal = parameters.normal_damping * (parameters.separation_damping if rising else 1.0)
     return np.outer(area, (tangential, tangential, normal))
@@ -129,13 +116,8 @@ def friction_bound(
         area: Area of the points [m2].
         time: Time [s].
     """
-    pressing = np.maximum(np.minimum(load, normal), 0.0)
-    return (
-        mu
-        * _multiplier(parameters.time_multiplier, time)
-        * _multiplier(parameters.pressure_multiplier, normal / area)
-        * pressing
-    )
+    factor = _multiplier(parameters.time_multiplier, time) * _multiplier(parameters.pressure_multiplier, normal / area)
+    return mu * factor * np.maximum(np.minimum(load, normal), 0.0)
 
 
 def _multiplier(knots: tuple[Knot, ...], at: Array | float) -> Array | float:
@@ -147,10 +129,7 @@ def _multiplier(knots: tuple[Knot, ...], at: Array | float) -> Array | float:
 def normal_force(parameters: AsperityParameters, linear: Array, height: Array) -> Array:
     """Return the normal force of points [N]: the linear law below the surface, limited to the stiction as a pull.
 
-    Args:
-        parameters: Of the law.
-        linear: A p - K h - C h' along the normal [N].
-        height: h of the points above the surface [m].
+    `linear` is A p - K h - C h' along the normal [N], `height` is h of the points above the surface [m].
     """
     return np.where(height < 0.0, np.maximum(linear, -parameters.stiction), 0.0)
 

@@ -14,8 +14,6 @@ z = h Z' (F(t - h) - F), with G = Z Z' and one column of Z for each degree of fr
 feet. Its matrix 1 / h + Z' B Z is symmetric and positive definite.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple, Self
 
@@ -72,7 +70,7 @@ class ContactMemory(NamedTuple):
     F: Array
 
     @staticmethod
-    def untouched(p_WQ: Array, V: Array) -> ContactMemory:
+    def untouched(p_WQ: Array, V: Array) -> "ContactMemory":
         """Memory of points (n, 3) without a contact so far, on bodies with the velocities V (6 b,)."""
         return ContactMemory(p_WQ, np.zeros(len(p_WQ)), np.zeros_like(p_WQ), V, np.zeros_like(V))
 

@@ -1,7 +1,5 @@
 """Ground reaction of a foot from the forces at its contacts, as a force plate under the foot would measure it."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

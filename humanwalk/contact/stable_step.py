@@ -1,7 +1,5 @@
 """The largest step at which the implicit contact step is stable under a body that stands."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

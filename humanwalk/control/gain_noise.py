@@ -1,7 +1,5 @@
 """Random errors of gains: those of a real body are not known exactly."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from typing import Any
 

@@ -4,8 +4,6 @@ The thesis resamples its curves with a greedy rule that gives 9 to 10 % less tha
 curve (erratum E16); here the arc length is integrated and inverted to rounding.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

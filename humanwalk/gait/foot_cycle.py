@@ -8,8 +8,6 @@ Path frame: x forward, z up [m]; z = 0 is the ground in walking, the hip is abov
 (d phase / d d = duty_factor / L), and is taken modulo 1.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -146,8 +144,7 @@ def smooth_swing(tau: Array, x: Array, z: Array, end_speed: float) -> tuple[Arra
     lift, lift_rate = swing_hump(tau)
     travel = x[-1] - x[0] + end_speed
     position = np.column_stack([x[0] - end_speed * tau + travel * blend, z.max() * lift])
-    rate = np.column_stack([-end_speed + travel * blend_rate, z.max() * lift_rate])
-    return position, rate
+    return position, np.column_stack([-end_speed + travel * blend_rate, z.max() * lift_rate])
 
 
 @overload
@@ -175,13 +172,10 @@ class FootCycle:
     """
 
     def __init__(self, parameters: FootPathParameters) -> None:
-        self.parameters = parameters
-        p = parameters
-        swing_fraction = 1.0 - p.duty_factor
-        self._swing_fraction = swing_fraction
-        self._swing = SwingCurve(
-            _SWING_X * p.step_length, _SWING_Z * p.step_height, p.walked_stride * swing_fraction, p.swing
-        )
+        self.parameters = p = parameters
+        self._swing_fraction = 1.0 - p.duty_factor
+        end_speed = p.walked_stride * self._swing_fraction
+        self._swing = SwingCurve(_SWING_X * p.step_length, _SWING_Z * p.step_height, end_speed, p.swing)
 
     def in_stance(self, phase: float) -> bool:
         """Whether the foot of this phase is on the ground."""
@@ -189,30 +183,27 @@ class FootCycle:
 
     def position(self, phase: float) -> tuple[float, float]:
         """(x, z) [m] in the path frame."""
-        phase %= 1.0
-        duty = self.parameters.duty_factor
-        if phase < duty:
-            return self.parameters.step_length * (1.0 - phase / duty), 0.0
-        return self._swing.position((phase - duty) / self._swing_fraction)
+        if self.in_stance(phase):
+            return self.parameters.step_length * (1.0 - phase % 1.0 / self.parameters.duty_factor), 0.0
+        return self._swing.position(self._tau(phase))
 
     def derivative(self, phase: float) -> tuple[float, float]:
         """d(x, z)/dphase [m]."""
-        phase %= 1.0
-        duty = self.parameters.duty_factor
-        if phase < duty:
-            return -self.parameters.step_length / duty, 0.0
-        x_rate, z_rate = self._swing.derivative((phase - duty) / self._swing_fraction)
+        if self.in_stance(phase):
+            return -self.parameters.step_length / self.parameters.duty_factor, 0.0
+        x_rate, z_rate = self._swing.derivative(self._tau(phase))
         return x_rate / self._swing_fraction, z_rate / self._swing_fraction
 
     def pitch(self, phase: float) -> tuple[float, float]:
         """Pitch of the sole [rad], toes down positive, and its derivative by phase; 0 in stance."""
-        phase %= 1.0
-        duty = self.parameters.duty_factor
-        if phase < duty:
+        if self.in_stance(phase):
             return 0.0, 0.0
-        hump, rate = swing_hump((phase - duty) / self._swing_fraction)
+        hump, rate = swing_hump(self._tau(phase))
         drop = self.parameters.toe_drop
         return drop * hump, drop * rate / self._swing_fraction
+
+    def _tau(self, phase: float) -> float:
+        return (phase % 1.0 - self.parameters.duty_factor) / self._swing_fraction
 
 
 def start_swing(parameters: FootPathParameters) -> SwingCurve:

@@ -1,7 +1,5 @@
 """Walking speed: a linear ramp from zero, then constant (thesis 4.2.3, erratum E26)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

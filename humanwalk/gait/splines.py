@@ -4,8 +4,6 @@ The splines of the thesis' programs (appendices A and B). Its text derives unifo
 it calls the cubic one Hermite (erratum E5); those do not pass through the control points and are not used.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline

@@ -8,8 +8,6 @@ Lengths have any unit, the same in and out; the thesis uses centimeters (L 50, H
 the thesis: x forward, y up, y = 0 the ground in walking.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np
@@ -22,25 +20,12 @@ LegPath = Literal["forward", "backward"]
 
 def forward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
     """Control points of appendix A: 3 of the start and 13 per cycle, shape (3 + 13 cycles, 2)."""
-    L, H = step_length, step_height
-    C = L / 18
+    L, H, C = step_length, step_height, step_length / 18
     start = [(L / 2, -offset), (3 * L / 4, H), (L, 2 * L / 50)]
-    cycle = [
-        (5 * L / 6, 0),
-        (L / 2, 0),
-        (L / 6, 0),
-        (0, L / 50),
-        (L / 10, L / 10 + L / 30),
-        (L / 6, H / 3 + C),
-        (L / 4, H / 2 + C),
-        (L / 3, 2 * H / 3 + C),
-        (L / 2, H + C),
-        (2 * L / 3, 2 * H / 3 + C),
-        (3 * L / 4, H / 2 + C),
-        (5 * L / 6, H / 3 + C),
-        (L, 2 * L / 50),
-    ]
-    return np.array(start + cycle * cycles, dtype=np.float64)
+    x = L * np.array([5 / 6, 1 / 2, 1 / 6, 0, 1 / 10, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 5 / 6, 1])
+    rise = [L / 50, L / 10 + L / 30, H / 3 + C, H / 2 + C, 2 * H / 3 + C]
+    y = [0, 0, 0, *rise, H + C, *rise[:1:-1], 2 * L / 50]
+    return np.vstack((start, np.tile(np.column_stack((x, y)), (cycles, 1))))
 
 
 def backward_control_points(step_length: float, step_height: float, offset: float, cycles: int = 2) -> Array:
@@ -48,23 +33,11 @@ def backward_control_points(step_length: float, step_height: float, offset: floa
 
     Shape (3 + 12 cycles, 2).
     """
-    L, H = step_length, step_height
-    start = [(L / 2, -offset), (0, 0)]
-    cycle = [
-        (L / 6, H / 3),
-        (L / 4, H / 2),
-        (L / 3, 2 * H / 3),
-        (L / 2, H),
-        (2 * L / 3, 2 * H / 3),
-        (3 * L / 4, H / 2),
-        (5 * L / 6, H / 3),
-        (L, 0),
-        (5 * L / 6, 0),
-        (L / 2, 0),
-        (L / 6, 0),
-        (0, 0),
-    ]
-    return np.array(start + cycle * cycles + cycle[:1], dtype=np.float64)
+    start = [(step_length / 2, -offset), (0, 0)]
+    x = step_length * np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 5 / 6, 1, 5 / 6, 1 / 2, 1 / 6, 0])
+    y = step_height * np.array([1 / 3, 1 / 2, 2 / 3, 1, 2 / 3, 1 / 2, 1 / 3, 0, 0, 0, 0, 0])
+    cycle = np.column_stack((x, y))
+    return np.vstack((start, np.tile(cycle, (cycles, 1)), cycle[:1]))
 
 
 def thesis_path(path: LegPath, step_length: float, step_height: float, offset: float) -> CubicHermite:

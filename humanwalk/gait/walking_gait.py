@@ -5,8 +5,6 @@ same at every speed. The foot that stands first moves back under the hip; the ot
 exactly half a cycle behind it (errata E26, E32).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from humanwalk.gait.foot_cycle import FootCycle, FootPathParameters, start_distance, start_swing, swing_hump
@@ -114,14 +112,8 @@ class WalkingGait:
             return PelvisTarget(d, speed, acceleration, offset, 0.0, 0.0)
         blend, slope, curvature = quintic_blend(d / d0)
         slope, curvature = slope / d0, curvature / d0**2
-        return PelvisTarget(
-            d,
-            speed,
-            acceleration,
-            offset * blend,
-            offset * slope * speed,
-            offset * (curvature * speed**2 + slope * acceleration),
-        )
+        drop_acceleration = offset * (curvature * speed**2 + slope * acceleration)
+        return PelvisTarget(d, speed, acceleration, offset * blend, offset * slope * speed, drop_acceleration)
 
     def in_stance(self, side: Side, t: float) -> bool:
         """Whether a foot should be on the ground at t [s]."""
@@ -147,12 +139,9 @@ class WalkingGait:
             pitch, pitch_slope = self._cycle.pitch(phase)
             pitch_slope /= self.parameters.walked_stride
         height_rate = height_slope * pelvis.speed
+        z = height - self.parameters.offset + pelvis.drop
         return FootTarget(
-            position=(
-                x - 0.5 * self.parameters.step_length,
-                self._y(side),
-                height - self.parameters.offset + pelvis.drop,
-            ),
+            position=(x - 0.5 * self.parameters.step_length, self._y(side), z),
             velocity=(x_slope * pelvis.speed, 0.0, height_rate + pelvis.drop_rate),
             height=height,
             height_rate=height_rate,

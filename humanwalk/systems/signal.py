@@ -1,7 +1,5 @@
 """Signals: what a system declares of itself to be recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 

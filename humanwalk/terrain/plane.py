@@ -1,7 +1,5 @@
 """An infinite plane through the world's origin: level ground or a slope."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -56,18 +54,15 @@ class Plane:
         return surface_axes(np.array((*-self._gradient, 1.0)))
 
     def height(self, xy: Array) -> Array:
-        """See `Terrain.height`."""
         height: Array = xy @ self._gradient
         return height
 
     def axes(self, xy: Array) -> Array:
-        """See `Terrain.axes`."""
         axes = np.empty((*xy.shape[:-1], 3, 3))
         axes[:] = self._R_SW
         return axes
 
     def friction(self, xy: Array) -> Array:
-        """See `Terrain.friction`."""
         return np.full(xy.shape[:-1], self.friction_coefficient)
 
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:

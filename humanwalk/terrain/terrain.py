@@ -1,7 +1,5 @@
 """The protocol of all terrains: a surface z = height(x, y) with axes and friction, which adds its solids to a plant."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Protocol
 

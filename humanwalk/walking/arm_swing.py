@@ -1,7 +1,5 @@
 """Arms that swing against the legs; ours, since the thesis only mentions that the hands may swing (chapters 3, 5)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -59,7 +57,5 @@ def arm_swing(
     """
     angle = 2.0 * math.pi * phase_right
     cosine, sine = math.cos(angle), math.sin(angle)
-    return (
-        -speed_fraction * cosine,
-        speed_fraction * sine * 2.0 * math.pi * phase_rate - speed_fraction_rate * cosine,
-    )
+    rate = speed_fraction * sine * 2.0 * math.pi * phase_rate - speed_fraction_rate * cosine
+    return -speed_fraction * cosine, rate

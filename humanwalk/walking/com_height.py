@@ -69,8 +69,5 @@ class ComHeight:
         """Height above the mean, at a time since touchdown [s] in steps of a duration [s], at a forward speed [m/s]."""
         amplitude, rate = self.arc_amplitude(speed), 2.0 * math.pi / step
         angle = rate * (since_touchdown - self.delay)
-        return ScalarMotion(
-            -amplitude * math.cos(angle),
-            amplitude * rate * math.sin(angle),
-            amplitude * rate**2 * math.cos(angle),
-        )
+        cosine, sine = amplitude * math.cos(angle), amplitude * math.sin(angle)
+        return ScalarMotion(-cosine, rate * sine, rate**2 * cosine)

@@ -6,8 +6,6 @@ xi = c + c'/w diverges from the zero-moment point, xi' = w (xi - z), and the cen
 (Hof 2008; Takenaka et al. 2009; Englsberger et al. 2015).
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from typing import NamedTuple
@@ -45,7 +43,7 @@ class ZmpSegment(NamedTuple):
             return self.end
         return self.start + (self.end - self.start) * min(max(t / self.duration, 0.0), 1.0)
 
-    def remainder(self, t: float) -> ZmpSegment:
+    def remainder(self, t: float) -> "ZmpSegment":
         """The part of the segment from t [s] after the start."""
         return ZmpSegment(self.at(t), self.end, max(self.duration - max(t, 0.0), 0.0))
 

@@ -3,8 +3,6 @@
 Points of the level plane are complex numbers x + iy [m]; headings are angles about z [rad].
 """
 
-from __future__ import annotations
-
 import cmath
 from typing import NamedTuple
 
@@ -25,7 +23,7 @@ class Foothold(NamedTuple):
     ground: float
 
     @staticmethod
-    def on(terrain: Terrain, position: complex) -> Foothold:
+    def on(terrain: Terrain, position: complex) -> "Foothold":
         """The foothold at a position."""
         return Foothold(position, height_at(terrain, position))
 
@@ -81,7 +79,7 @@ class PlannerState(NamedTuple):
     steps: int = 0
     swing: Swing | None = None
 
-    def __deepcopy__(self, memo: object) -> PlannerState:
+    def __deepcopy__(self, memo: object) -> "PlannerState":
         """Return itself: Drake copies abstract values often, and the state is immutable."""
         return self
 

@@ -1,7 +1,5 @@
 """Trajectory of the swinging foot: over the level plane to a foothold that may move; height and pitch by splines."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -90,7 +88,7 @@ class SwingProfile:
     @staticmethod
     def from_toe_off(
         foot: FootState, flat_height: float, toe_up: float, duration: float, parameters: SwingParameters
-    ) -> SwingProfile:
+    ) -> "SwingProfile":
         """The profile that continues the motion of a foot at toe-off.
 
         Args:
