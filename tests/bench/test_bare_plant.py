@@ -29,7 +29,7 @@ def recorded(name: str, **overrides: Any) -> tuple[Scenario, PlantRecord]:
         ("thesis", {"actuation__pd__law": "implicit"}),
         ("thesis", {"contact": "hydroelastic"}),
         ("walk", {}),
-        ("stand", {"pushes__pushes": "[{time: 0.02, duration: 0.02, impulse: 2.0}]"}),
+        ("stand", {"pushes__given": "[{time: 0.02, duration: 0.02, impulse: 2.0}]"}),
     ],
     ids=["thesis", "implicit", "hydroelastic", "balanced", "pushed"],
 )
