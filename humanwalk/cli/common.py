@@ -1,12 +1,10 @@
 """What the commands share: the application, consoles, exit codes, options."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import IO, Annotated, Any, cast
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn, TimeRemainingColumn
 
 from humanwalk.cli.streams import BestEffort
 from humanwalk.quantity import ParameterError, printable
@@ -35,15 +33,15 @@ class SafeConsole(Console):
 
     def print(self, *objects: Any, **options: Any) -> None:
         """Print as Rich does; see rich.console.Console.print."""
-        super().print(*(_safe(thing) if isinstance(thing, str) else thing for thing in objects), **options)
+
+        def safe(text: str) -> str:
+            return "\n".join(printable(line, MAX_MESSAGE) for line in text.split("\n"))
+
+        super().print(*(safe(thing) if isinstance(thing, str) else thing for thing in objects), **options)
 
 
 class MessageConsole(SafeConsole):
     """A console on stderr whose failures are ignored: they would end the program, and a run be lost."""
-
-    def __init__(self) -> None:
-        """Make the console."""
-        super().__init__(stderr=True)
 
     @property
     def file(self) -> IO[str]:
@@ -55,11 +53,7 @@ class MessageConsole(SafeConsole):
         super(MessageConsole, type(self)).file.__set__(self, new_file)  # type: ignore[attr-defined]
 
 
-def _safe(text: str) -> str:
-    return "\n".join(printable(line, MAX_MESSAGE) for line in text.split("\n"))
-
-
-console = MessageConsole()
+console = MessageConsole(stderr=True)
 """Progress and messages."""
 stdout = SafeConsole()
 """Results, which a shell may redirect."""
@@ -106,10 +100,8 @@ def require_look(look: str) -> None:
         raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
 
 
-@contextmanager
-def counted_progress(unit: str) -> Iterator[Progress]:
+def counted_progress(unit: str) -> Progress:
     """A progress bar that counts, with elapsed and estimated remaining time."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn(f"{unit},"))
-    times = (TimeElapsedColumn(), TextColumn("elapsed,"), TimeRemainingColumn(), TextColumn("remaining"))
-    with Progress(*columns, *times, console=console, transient=True) as progress:
-        yield progress
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), f"{unit},")
+    times = (TimeElapsedColumn(), "elapsed,", TimeRemainingColumn(), "remaining")
+    return Progress(*columns, *times, console=console, transient=True)

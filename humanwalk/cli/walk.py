@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
+from rich.progress import BarColumn, Progress, TimeRemainingColumn
+from rich.table import Column, Table
 
 from humanwalk.files import write_text
 from humanwalk.motion.motion_table import read_motion_table
@@ -132,12 +132,7 @@ def _simulate_with_progress(
         with suppress(ParameterError):
             so_far.write(path, name)
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.1f} of {task.total:g} s"),
-        TimeRemainingColumn(),
-    )
+    columns = ("{task.description}", BarColumn(), "{task.completed:.1f} of {task.total:g} s", TimeRemainingColumn())
     progress = Progress(*columns, console=console, transient=True)
     task = progress.add_task(name, total=scenario.duration)
 
@@ -165,12 +160,8 @@ def _simulate_with_progress(
 
 def summary_table(summary: Mapping[str, Any]) -> Table:
     """Main figures of a summary; those that a run does not have are omitted, except that it had external support."""
-    table = Table(
-        title=f"{printable(summary['scenario'])}: {summary['end']} at {summary['duration_s']:.2f} s", show_header=False
-    )
-    table.add_column(justify="left")
-    table.add_column(justify="right")
-    table.add_column(justify="left")
+    title = f"{printable(summary['scenario'])}: {summary['end']} at {summary['duration_s']:.2f} s"
+    table = Table("", Column(justify="right"), "", title=title, show_header=False)
 
     def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
         if value is not None:
@@ -179,12 +170,8 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
             table.add_row(what, "-", unit)
 
     commanded = summary["commanded_speed_m_s"]
-    row(
-        "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})",
-        summary["mean_speed_m_s"],
-        ".3f",
-        "m/s",
-    )
+    speed = "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})"
+    row(speed, summary["mean_speed_m_s"], ".3f", "m/s")
     row("distance", summary["distance_m"], ".2f", "m")
     row("steps", summary["steps"], "d", "")
     for side in ("right", "left"):

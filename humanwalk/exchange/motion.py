@@ -6,7 +6,7 @@ import numpy as np
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.markers import markers
+from humanwalk.body.markers import Marker, markers
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
@@ -42,21 +42,20 @@ def marker_paths(run: Run) -> dict[str, Array]:
     subject = run.scenario.subject
     plant = kinematics_plant(subject)
     context = plant.CreateDefaultContext()
-    on_body: dict[str, list[tuple[str, tuple[float, float, float]]]] = {}
+    on_body: dict[str, list[Marker]] = {}
     for marker in markers(subject.skeleton):
-        on_body.setdefault(marker.body, []).append((marker.name, marker.position))
-    rows = positions(run)
-    paths = {marker.name: np.empty((rows.shape[0], 3)) for marker in markers(subject.skeleton)}
+        on_body.setdefault(marker.body, []).append(marker)
     bodies = [
-        (plant.GetBodyByName(body), [name for name, _ in stuck], np.array([p for _, p in stuck]).T)
+        (plant.GetBodyByName(body), stuck, np.array([marker.position for marker in stuck]).T)
         for body, stuck in on_body.items()
     ]
+    rows = positions(run)
+    paths = {marker.name: np.empty((len(rows), 3)) for marker in markers(subject.skeleton)}
     for i, q in enumerate(rows):
         plant.SetPositions(context, q)
-        for body, names, p_BM in bodies:
-            p_WM = body.EvalPoseInWorld(context) @ p_BM
-            for j, name in enumerate(names):
-                paths[name][i] = p_WM[:, j]
+        for body, stuck, p_BM in bodies:
+            for marker, p_WM in zip(stuck, (body.EvalPoseInWorld(context) @ p_BM).T, strict=True):
+                paths[marker.name][i] = p_WM
     return paths
 
 

@@ -90,12 +90,10 @@ def external_loads(run: Run) -> MotionTable:
     columns: dict[str, Array] = {}
     for side, load in ground_forces(run).items():
         letter = side[0].lower()
-        columns |= zip([f"ground_force_{letter}_v{axis}" for axis in "xyz"], (load.force @ R_OW.T).T, strict=True)
-        columns |= zip([f"ground_force_{letter}_p{axis}" for axis in "xyz"], (load.point @ R_OW.T).T, strict=True)
-        zero = np.zeros_like(load.free_moment)
-        columns |= zip(
-            [f"ground_torque_{letter}_{axis}" for axis in "xyz"], (zero, load.free_moment, zero), strict=True
-        )
+        torque = np.outer(load.free_moment, (0.0, 0.0, 1.0))
+        vectors = {f"force_{letter}_v": load.force, f"force_{letter}_p": load.point, f"torque_{letter}_": torque}
+        for name, vector in vectors.items():
+            columns |= zip([f"ground_{name}{axis}" for axis in "xyz"], (vector @ R_OW.T).T, strict=True)
     return _table(run, columns, in_degrees=False)
 
 

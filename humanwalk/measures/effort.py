@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.numerics import Indices, Mask
+from humanwalk.numerics import Array, Indices, Mask
 from humanwalk.quantity import GRAVITY
 
 
@@ -23,6 +23,13 @@ def joint_names(signals: pa.Table) -> list[str]:
     return [name.removesuffix(ending) for name in signals.column_names if name.endswith(ending)]
 
 
+def joint_power(signals: pa.Table) -> Array:
+    """Torque times rate of every joint [W], shape (rows, joints), in the order of `joint_names`."""
+    names = joint_names(signals)
+    torque = matrix(signals, [f"{name}.torque_N_m" for name in names])
+    return torque * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
+
+
 def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | None:
     """Mechanical cost of transport: time integral of sum |torque x rate| over m g d, without recovery of negative work.
 
@@ -35,13 +42,9 @@ def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | Non
         return None
     time = signals[TIME].to_numpy()[rows]
     x = signals["com.x_m"].to_numpy()[rows]
-    names = joint_names(signals)
-    power = np.abs(
-        matrix(signals, [f"{name}.torque_N_m" for name in names])
-        * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
-    ).sum(axis=1)
+    power = np.abs(joint_power(signals)[rows]).sum(axis=1)
     distance = x[-1] - x[0]
-    return float(np.trapezoid(power[rows], time) / (mass * GRAVITY * distance)) if distance > 0 else None
+    return float(np.trapezoid(power, time) / (mass * GRAVITY * distance)) if distance > 0 else None
 
 
 def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] | None:
@@ -59,12 +62,10 @@ def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] |
         return None
     rows = slice(touchdowns[0], touchdowns[-1] + 1)
     time = signals[TIME].to_numpy()[rows]
-    names = joint_names(signals)
-    power = matrix(signals, [f"{name}.torque_N_m" for name in names])[rows]
-    power = power * matrix(signals, [f"{name}.velocity_rad_s" for name in names])[rows]
+    power = joint_power(signals)[rows]
     positive = np.trapezoid(np.maximum(power, 0.0), time, axis=0) / strides
     negative = np.trapezoid(np.minimum(power, 0.0), time, axis=0) / strides
     return {
         name: {"positive": float(delivered), "negative": float(absorbed)}
-        for name, delivered, absorbed in zip(names, positive, negative, strict=True)
+        for name, delivered, absorbed in zip(joint_names(signals), positive, negative, strict=True)
     }

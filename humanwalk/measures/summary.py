@@ -67,13 +67,15 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         name: of the scenario.
     """
     time = signals[TIME].to_numpy()
-    controller = scenario.controller
+    controller, physics = scenario.controller, scenario.controller.physics
     steady_from = controller.steady_from(scenario.subject)
     steady = time >= steady_from
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
-    physics = controller.physics
-    supported = "support.force_x_N" in signals.column_names
+    forces, torques = (
+        [f"support.{what}_{axis}{unit}" for axis in "xyz"] for what, unit in (("force", "_N"), ("torque", "_N_m"))
+    )
+    supported = forces[0] in signals.column_names
     summary: Summary = {
         "scenario": printable(name),
         "description": printable(scenario.description, 1000),
@@ -91,8 +93,8 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
         "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,
         "external_support": supported,
-        "support_force_rms_N": _rms_norm(signals, "support.force_", "N", steady) if supported else 0.0,
-        "support_torque_rms_N_m": _rms_norm(signals, "support.torque_", "N_m", steady) if supported else 0.0,
+        "support_force_rms_N": _rms_norm(matrix(signals, forces), steady) if supported else 0.0,
+        "support_torque_rms_N_m": _rms_norm(matrix(signals, torques), steady) if supported else 0.0,
         "pelvis_tracking_rms_m": pelvis_tracking(signals, steady),
         "peak_torque_N_m": {name: float(np.abs(signals[f"{name}.torque_N_m"].to_numpy()).max()) for name in joints},
         "saturated_share": {name: float(signals[f"{name}.saturated"].to_numpy().mean()) for name in joints},
@@ -125,11 +127,11 @@ def foot_line_error(signals: pa.Table, side: Side) -> float:
 
 def pelvis_tracking(signals: pa.Table, rows: Mask) -> float | None:
     """Root mean square distance of the pelvis from its walking reference [m]."""
-    if not rows.any() or "pelvis.reference_x_m" not in signals.column_names:
+    if "pelvis.reference_x_m" not in signals.column_names:
         return None
     actual = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"])
     wanted = matrix(signals, [f"pelvis.reference_{axis}_m" for axis in "xyz"])
-    return float(np.sqrt(((actual - wanted)[rows] ** 2).sum(axis=1).mean()))
+    return _rms_norm(actual - wanted, rows)
 
 
 def qp_failures(signals: pa.Table) -> int | None:
@@ -142,10 +144,8 @@ def qp_failures(signals: pa.Table) -> int | None:
 
 def tracking_error(signals: pa.Table, joint: str, rows: Mask) -> float | None:
     """Root mean square difference between a joint's desired and actual angle [rad]."""
-    if not rows.any():
-        return None
-    error = signals[f"{joint}.desired_angle_rad"].to_numpy() - signals[f"{joint}.angle_rad"].to_numpy()
-    return float(np.sqrt((error[rows] ** 2).mean()))
+    desired, actual = (matrix(signals, [f"{joint}.{which}_rad"]) for which in ("desired_angle", "angle"))
+    return _rms_norm(desired - actual, rows)
 
 
 def ik_converged_share(signals: pa.Table) -> float | None:
@@ -165,8 +165,6 @@ def _slope(time: Array, x: Array) -> float | None:
     return float((x[-1] - x[0]) / (time[-1] - time[0])) if time.size > 1 else None
 
 
-def _rms_norm(signals: pa.Table, prefix: str, unit: str, rows: Mask) -> float | None:
-    if not rows.any():
-        return None
-    vectors = matrix(signals, [f"{prefix}{axis}_{unit}" for axis in "xyz"])[rows]
-    return float(np.sqrt((vectors**2).sum(axis=1).mean()))
+def _rms_norm(vectors: Array, rows: Mask) -> float | None:
+    """Root mean square length of vectors, shape (rows, n), in the chosen rows; None if there are none."""
+    return float(np.sqrt((vectors[rows] ** 2).sum(axis=1).mean())) if rows.any() else None

@@ -5,8 +5,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import Provenance, file_hash, scenario_hash, versions
@@ -55,10 +53,12 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     scenario, then = run.scenario, run.summary["provenance"]
     notes = list(_changes(run, then))
     last = float(run.time[-1])
+    interrupted = run.summary["end"] == "interrupted"
     again = simulate(
-        replace(scenario, duration=last) if run.summary["end"] == "interrupted" and last > 0 else scenario,
-        on_progress=on_progress,
+        replace(scenario, duration=last) if interrupted and last > 0 else scenario, on_progress=on_progress
     )
+    # The repetition of an interrupted run completes its shorter duration.
+    end = "interrupted" if interrupted and again.end == "completed" else again.end
     old, new = run.signals, again.signals
     other = sorted(set(old.column_names) ^ set(new.column_names))
     if other:
@@ -67,16 +67,13 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     if old.num_rows != new.num_rows:
         notes.append(f"{new.num_rows} rows where there were {old.num_rows}")
     rows = min(old.num_rows, new.num_rows)
-    differ = {}
-    for name in old.column_names:
-        unequal = np.flatnonzero(old[name].to_numpy()[:rows] != new[name].to_numpy()[:rows])
-        if unequal.size:
-            differ[name] = int(unequal[0])
+    unequal = {name: old[name].to_numpy()[:rows] != new[name].to_numpy()[:rows] for name in old.column_names}
+    differ = {name: int(places.argmax()) for name, places in unequal.items() if places.any()}
     if differ:
-        first = min(differ, key=lambda name: differ[name])
+        first = min(differ, key=differ.__getitem__)
         notes.append(f"{len(differ)} signals differ, first {first} at {run.time[differ[first]]:g} s")
     old_measures = dict(_numbers(replace(again, signals=old, end=run.summary["end"]).summary()))
-    new_measures = dict(_numbers(replace(again, end=_end(run, again.end)).summary()))
+    new_measures = dict(_numbers(replace(again, end=end).summary()))
     apart = [
         f"{name}: {new_measures.get(name)} where it was {value}"
         for name, value in old_measures.items()
@@ -87,29 +84,20 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     return Reproduction(bits, bits or not apart, tuple(notes))
 
 
-def _end(run: Run, end: str) -> str:
-    # The repetition of an interrupted run completes its shorter duration.
-    return "interrupted" if run.summary["end"] == "interrupted" and end == "completed" else end
-
-
 def _changes(run: Run, then: Provenance) -> Iterator[str]:
     """What has changed since the run."""
     if then["scenario_sha256"] != scenario_hash(run.scenario):
         yield "scenario.yaml was changed since the run, or this version reads its fields differently"
     for field, path in file_paths(run.scenario.controller).items():
-        if _followed_hash(path) != then["files_sha256"].get(field):
+        found = file_hash(path)
+        if found is None:
+            raise ParameterError(f"follow: {path} is gone; allowed: the file that was followed; put it back")
+        if found != then["files_sha256"].get(field):
             yield f"{path} was changed since the run"
     now = versions()
     for name, was in then["versions"].items():
         if now.get(name) != was:
             yield f"{name} is {now.get(name)}, was {was}"
-
-
-def _followed_hash(path: str) -> str:
-    found = file_hash(path)
-    if found is None:
-        raise ParameterError(f"follow: {path} is gone; allowed: the file that was followed; put it back")
-    return found
 
 
 def _numbers(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -2,6 +2,7 @@
 
 import html
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -81,9 +82,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
             measure.name: {
                 "unit": measure.unit,
                 "values": _numbers(measure.values),
-                "people": None
-                if measure.people is None
-                else {"low": measure.people.low, "high": measure.people.high, "source": measure.people.source},
+                "people": asdict(measure.people) if measure.people else None,
             }
             for measure in comparison.measures
         },
@@ -120,8 +119,8 @@ def write_report(run: Run, comparison: Comparison) -> Path:
         figures="\n".join(
             f'<img alt="{name}" src="{svg_data(figure, name)}">' for name, figure in figures if figure is not None
         ),
-        sources=_html_items(sources(comparison)),
-        notes=_html_items(NOTES),
+        sources=_elements("li", sources(comparison)),
+        notes=_elements("li", NOTES),
     )
     path = run.path / REPORT
     write_text(path, page)
@@ -175,12 +174,10 @@ def _numbers(values: Array) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
 
 
-def _html_table(header: Sequence[str], rows: Iterator[tuple[str, ...]]) -> str:
-    def line(cells: Sequence[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
-
-    return "\n".join(("<table>", line(header, "th"), *(line(row, "td") for row in rows), "</table>"))
+def _html_table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> str:
+    lines = _elements("th", header), *(_elements("td", row) for row in rows)
+    return "\n".join(("<table>", *(f"<tr>{line}</tr>" for line in lines), "</table>"))
 
 
-def _html_items(items: Sequence[str]) -> str:
-    return "\n".join(f"<li>{html.escape(item)}</li>" for item in items)
+def _elements(tag: str, texts: Sequence[str]) -> str:
+    return "".join(f"<{tag}>{html.escape(text)}</{tag}>" for text in texts)

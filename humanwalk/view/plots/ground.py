@@ -1,4 +1,7 @@
-"""Ground reaction forces and center of pressure at the end of a run."""
+"""External forces: ground reaction and center of pressure at the end of a run, support of the pelvis over time."""
+
+from functools import partial
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,11 +12,20 @@ from matplotlib.patches import Rectangle
 from humanwalk.body import REFERENCE_STATURE, SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.measures.events import CONTACT_ON_N, events_of
-from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
-from humanwalk.view.plots.drawing import INK, SIDE, curve, label, legend, level, new_figure, true_proportions
+from humanwalk.view.plots.drawing import (
+    AXIS_COLORS,
+    INK,
+    SIDE,
+    curve,
+    label,
+    legend,
+    level,
+    new_figure,
+    true_proportions,
+)
 
 LAST_SECONDS = 2.0
 """Stretch of `ground_reaction` [s]: three strides of the thesis' walk."""
@@ -33,8 +45,13 @@ def ground_reaction(run: Run) -> Figure | None:
     vertical, fore_aft = figure.axes
     for side in SIDES:
         for axes, axis in ((vertical, "z"), (fore_aft, "x")):
-            force = run.signals[f"{side.lower()}_foot.force_{axis}_N"].to_numpy()[rows]
-            curve(axes, time, force, color=SIDE[side], label=f"{side.lower()} foot")
+            curve(
+                axes,
+                time,
+                run[f"{side.lower()}_foot.force_{axis}"][rows],
+                color=SIDE[side],
+                label=f"{side.lower()} foot",
+            )
     level(vertical, weight, f"body weight, {weight:.0f} N")
     level(fore_aft, 0.0)
     label(vertical, "", "vertical force [N]")
@@ -47,7 +64,7 @@ def ground_reaction(run: Run) -> Figure | None:
 def center_of_pressure(run: Run) -> Figure | None:
     """Center of mass, centers of pressure and footprints from above [m]; None if no foot was loaded."""
     time, rows = _last(run, LAST_SECONDS_ABOVE)
-    loaded = {side: (run.signals[f"{side.lower()}_foot.force_z_N"].to_numpy() >= CONTACT_ON_N) & rows for side in SIDES}
+    loaded = {side: (run[f"{side.lower()}_foot.force_z"] >= CONTACT_ON_N) & rows for side in SIDES}
     if time.size < 2 or not any(on.any() for on in loaded.values()):
         return None
     figure = new_figure(
@@ -56,24 +73,11 @@ def center_of_pressure(run: Run) -> Figure | None:
     (axes,) = figure.axes
     for side in SIDES:
         _footprints(run, axes, side, rows)
-        cop = {axis: run.signals[f"{side.lower()}_foot.cop_{axis}_m"].to_numpy()[loaded[side]] for axis in "xy"}
-        axes.plot(
-            cop["x"], cop["y"], ".", markersize=3.5, color=SIDE[side], label=f"center of pressure, {side.lower()}"
-        )
-    com = {axis: run.signals[f"com.{axis}_m"].to_numpy()[rows] for axis in "xy"}
-    line = curve(axes, com["x"], com["y"], color=INK, label="center of mass")
-    dots = [
-        Line2D(
-            [],
-            [],
-            marker="o",
-            markersize=4,
-            linestyle="",
-            color=SIDE[side],
-            label=f"center of pressure, {side.lower()}",
-        )
-        for side in SIDES
-    ]
+        x, y = (run[f"{side.lower()}_foot.cop_{axis}"][loaded[side]] for axis in "xy")
+        axes.plot(x, y, ".", markersize=3.5, color=SIDE[side], label=f"center of pressure, {side.lower()}")
+    line = curve(axes, run["com.x"][rows], run["com.y"][rows], color=INK, label="center of mass")
+    dot = partial(Line2D, [], [], marker="o", markersize=4, linestyle="")
+    dots = [dot(color=SIDE[side], label=f"center of pressure, {side.lower()}") for side in SIDES]
     axes.margins(x=0.02)
     true_proportions(figure)
     label(axes, "forward x [m]", "left y [m]")
@@ -81,29 +85,44 @@ def center_of_pressure(run: Run) -> Figure | None:
     return figure
 
 
+def support(run: Run, what: Literal["force", "torque"]) -> Figure | None:
+    """Force [N] or torque [N m] of the support on the pelvis in the world; None for a run without support."""
+    unit, names = {"force": ("N", ("forward", "left", "up")), "torque": ("N m", ("roll", "pitch", "yaw"))}[what]
+    ending = unit.replace(" ", "_")
+    rms: float | None = run.summary[f"support_{what}_rms_{ending}"]  # type: ignore[literal-required]
+    columns = [f"support.{what}_{axis}_{ending}" for axis in "xyz"]
+    recorded = set(columns) <= set(run.signals.column_names)
+    if not (run.summary["external_support"] and recorded and run.time.size >= 2):
+        return None
+    title = f"External support (the assumed balance): {what} on the pelvis"
+    if rms is not None:
+        title += f"\nrms {rms:.0f} {unit} in steady walking"
+    if rms is not None and what == "force":
+        title += f", {100 * rms / (run.scenario.subject.mass * GRAVITY):.0f} % of body weight"
+    figure = new_figure(title, height=4.4, rows=3, sharex=True)
+    for axes, axis, name, column in zip(figure.axes, "xyz", names, columns, strict=True):
+        level(axes, 0.0)
+        curve(axes, run.time, run[column], color=AXIS_COLORS[axis], linewidth=0.8)
+        label(axes, "time [s]" if axis == "z" else "", f"{name} {axis} [{unit}]")
+    figure.align_ylabels()
+    return figure
+
+
 def _last(run: Run, seconds: float) -> tuple[Array, Mask]:
-    time = run.signals[TIME].to_numpy()
-    rows = time >= time[-1] - seconds
-    return time[rows], rows
+    rows = run.time >= run.time[-1] - seconds
+    return run.time[rows], rows
 
 
 def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
     """Draw the outline of the sole at the middle of each contact."""
     contact = events_of(run.signals, side).contact & rows
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], contact.astype(int), [0]))))
-    x, y = (run.signals[f"{side.lower()}_sole.{axis}_m"].to_numpy() for axis in "xy")
+    edges = np.flatnonzero(np.diff(contact.astype(int), prepend=0, append=0))
+    x, y = (run[f"{side.lower()}_sole.{axis}"] for axis in "xy")
     scale = run.scenario.subject.stature / REFERENCE_STATURE
     for begin, end in edges.reshape(-1, 2):
         middle = (begin + end) // 2
         for part in SOLE_PARTS:
-            back, front = (scale * at for at in part.x)
-            width = scale * part.width
-            axes.add_patch(
-                Rectangle(
-                    (x[middle] + back, y[middle] - width / 2),
-                    front - back,
-                    width,
-                    facecolor=(*SIDE[side], 0.13),
-                    edgecolor="none",
-                )
-            )
+            back, front, width = scale * part.x[0], scale * part.x[1], scale * part.width
+            corner = (x[middle] + back, y[middle] - width / 2)
+            sole = Rectangle(corner, front - back, width, facecolor=(*SIDE[side], 0.13), edgecolor="none")
+            axes.add_patch(sole)

@@ -1,6 +1,7 @@
 """Draws plots of a run, and writes them into its folder."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -9,15 +10,13 @@ from humanwalk.files import make_folder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import FORMATS, save
-from humanwalk.view.plots.gait_cycle import gait_cycle_angles, gait_cycle_pelvis, joint_power
-from humanwalk.view.plots.ground import center_of_pressure, ground_reaction
-from humanwalk.view.plots.joints import joint_torques, tracking_error
-from humanwalk.view.plots.support import support_force, support_torque
+from humanwalk.view.plots.ground import center_of_pressure, ground_reaction, support
+from humanwalk.view.plots.joints import gait_cycle_angles, gait_cycle_pelvis, joint_power, joint_torques, tracking_error
 from humanwalk.view.plots.thesis_figures import THESIS_PLOTS
 
 PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
-    "support_force": support_force,
-    "support_torque": support_torque,
+    "support_force": partial(support, what="force"),
+    "support_torque": partial(support, what="torque"),
     "gait_cycle_angles": gait_cycle_angles,
     "gait_cycle_pelvis": gait_cycle_pelvis,
     "joint_power": joint_power,
@@ -62,12 +61,8 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
     names = select(only or ())
     run.require_physics()
     make_folder(run.plots)
-    written = []
-    for name in names:
-        figure = PLOTS[name](run)
-        if figure is not None:
-            written.append(save(figure, run.plots / f"{name}.{format}"))
-    return written
+    figures = ((name, PLOTS[name](run)) for name in names)
+    return [save(figure, run.plots / f"{name}.{format}") for name, figure in figures if figure is not None]
 
 
 def select(only: Sequence[str]) -> list[str]:
