@@ -73,17 +73,9 @@ def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
 
 
 def _hinge(joint: Joint) -> ET.Element:
-    return ET.Element(
-        "joint",
-        {
-            "name": joint.name,
-            "axis": numbers(joint.axis),
-            "limited": "true",
-            "range": numbers(joint.range_rad),
-            "damping": number(joint.damping),
-            "armature": number(joint.rotor_inertia),
-        },
-    )
+    limits = {"limited": "true", "range": numbers(joint.range_rad)}
+    dynamics = {"damping": number(joint.damping), "armature": number(joint.rotor_inertia)}
+    return ET.Element("joint", {"name": joint.name, "axis": numbers(joint.axis)} | limits | dynamics)
 
 
 def _inertial(segment: Segment) -> ET.Element:
@@ -98,17 +90,7 @@ def _visual(look: Visual) -> ET.Element:
         size = tuple(0.5 * edge for edge in look.size)
     else:
         size = (look.size[0], 0.5 * look.size[1])
-    return ET.Element(
-        "geom",
-        {
-            "name": f"{look.body}_{look.name}",
-            "type": look.primitive,
-            "size": numbers(size),
-            "pos": numbers(look.center),
-            "euler": numbers(look.rpy),
-            "rgba": numbers((*look.color, 1)),
-            "contype": "0",
-            "conaffinity": "0",
-            "group": "1",
-        },
-    )
+    shape = {"name": f"{look.body}_{look.name}", "type": look.primitive, "size": numbers(size)}
+    pose = {"pos": numbers(look.center), "euler": numbers(look.rpy)}
+    drawn_only = {"contype": "0", "conaffinity": "0", "group": "1"}
+    return ET.Element("geom", shape | pose | {"rgba": numbers((*look.color, 1))} | drawn_only)

@@ -263,8 +263,7 @@ class Skeleton:
         """
         require_in_range("mass", mass, "kg", *MASS_RANGE_KG)
         require_in_range("stature", stature, "m", *STATURE_RANGE_M)
-        length_factor = stature / self.stature
-        mass_factor = mass / self.total_mass
+        length_factor, mass_factor = stature / self.stature, mass / self.total_mass
         return Skeleton(
             segments=tuple(s.scaled(length_factor, mass_factor) for s in self.segments),
             joints=tuple(j.scaled(length_factor, mass_factor) for j in self.joints),

@@ -127,11 +127,8 @@ class BalancedController:
             state=world.state,
             plan=planner.GetOutputPort("plan"),
         )
-        return Command(
-            desired_state=controller.GetOutputPort("desired_state"),
-            sample_time=controller.GetOutputPort("sample_time"),
-            feedforward=controller.GetOutputPort("torque"),
-        )
+        state, time, torque = map(controller.GetOutputPort, ("desired_state", "sample_time", "torque"))
+        return Command(state, time, feedforward=torque)
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         """Raise ParameterError: a plan depends on the simulated state."""

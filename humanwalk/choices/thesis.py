@@ -118,12 +118,8 @@ class ThesisController:
         world.builder.Connect(targets, solver.GetInputPort("sole_targets"))
         world.builder.Connect(posture, solver.GetInputPort("posture"))
         add_support(world, self.balance.support, gait.GetOutputPort("pelvis_reference"))
-        return Command(
-            desired_state=solver.GetOutputPort("desired_state"),
-            sample_time=solver.GetOutputPort("sample_time"),
-            previous_state=solver.GetOutputPort("previous_state"),
-            previous_time=solver.GetOutputPort("previous_time"),
-        )
+        samples = ("desired_state", "sample_time", "previous_state", "previous_time")
+        return Command(**{name: solver.GetOutputPort(name) for name in samples})
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         gait, arms, solver = self._add_source(world)

@@ -197,14 +197,8 @@ def point_jacobians(r: Array, R_SW: Array) -> Array:
 def body_jacobians(plant: MultibodyPlant, context: Context, bodies: Sequence[RigidBody]) -> Array:
     """Stacked Jacobians of the bodies' [angular; translational] velocities at their origins, in W, shape (6 b, nv)."""
     world = plant.world_frame()
-    return np.vstack(
-        [
-            plant.CalcJacobianSpatialVelocity(
-                context, JacobianWrtVariable.kV, body.body_frame(), np.zeros(3), world, world
-            )
-            for body in bodies
-        ]
-    )
+    frames, kV, origin = [body.body_frame() for body in bodies], JacobianWrtVariable.kV, np.zeros(3)
+    return np.vstack([plant.CalcJacobianSpatialVelocity(context, kV, frame, origin, world, world) for frame in frames])
 
 
 def body_mobility(M: Array, J: Array, added: Array) -> Array:

@@ -83,13 +83,10 @@ class WalkingGait:
             raise ParameterError(
                 f'first_swing: {first_swing!r} is unknown; allowed: "Right" or "Left"; name the leg that swings first'
             )
-        self.parameters = parameters
-        self.hip_half_width = hip_half_width
-        self.ramp = ramp
-        self.first_swing = first_swing
+        self.parameters, self.hip_half_width = parameters, hip_half_width
+        self.ramp, self.first_swing = ramp, first_swing
         self.start_distance = start_distance(parameters)
-        self._cycle = FootCycle(parameters)
-        self._start = start_swing(parameters)
+        self._cycle, self._start = FootCycle(parameters), start_swing(parameters)
 
     @property
     def start_time(self) -> float:

@@ -194,11 +194,8 @@ class _Columns:
                 "check the unit (angle_unit) and the sign (scale: -1) in --mapping"
             )
         largest = np.rad2deg(excess.max(axis=0))
-        clipped = [
-            f"{joints.names[i]} by up to {largest[i]:.2g} deg"
-            for i in np.argsort(-largest)
-            if largest[i] > MIN_REPORTED_CLIP
-        ]
+        reported = [i for i in np.argsort(-largest) if largest[i] > MIN_REPORTED_CLIP]
+        clipped = [f"{joints.names[i]} by up to {largest[i]:.2g} deg" for i in reported]
         if clipped:
             logger.warning("%s: angles clipped to the range of their joints: %s", self._file, ", ".join(clipped))
         return np.clip(angles, joints.lower, joints.upper)
@@ -228,12 +225,8 @@ class _Body:
         q[self._joints.q] = angles
         q[self._pelvis : self._pelvis + 7] = [*pelvis_rotation(pelvis_angles).ToQuaternion().wxyz(), 0.0, 0.0, 0.0]
         self._plant.SetPositions(self._context, q)
-        return np.array(
-            [
-                body.EvalPoseInWorld(self._context) @ np.array(sphere.center) - [0.0, 0.0, sphere.radius]
-                for body, sphere in self._spheres
-            ]
-        )
+        centers = [body.EvalPoseInWorld(self._context) @ np.array(sphere.center) for body, sphere in self._spheres]
+        return np.array(centers) - [[0.0, 0.0, sphere.radius] for _, sphere in self._spheres]
 
 
 def _stance_path(body: _Body, terrain: Terrain, angles: Array, pelvis_angles: Array) -> Array:

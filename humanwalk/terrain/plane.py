@@ -13,9 +13,7 @@ from humanwalk.numerics import Array
 from humanwalk.quantity import quantity
 from humanwalk.terrain.terrain import GroundProperties, surface_axes
 
-LENGTH = 60
-WIDTH = 10
-BEHIND = 6
+LENGTH, WIDTH, BEHIND = 60, 10, 6
 """Length and width of the drawn floor, and the part of its length behind the origin [m]; the half-space is infinite."""
 
 THICKNESS = 0.02
@@ -27,8 +25,7 @@ MARK_COLOR = np.array([0.36, 0.40, 0.43, 1.0])
 
 _Box = tuple[str, tuple[float, float, float], tuple[float, float, float], Array]
 
-LINE_WIDTH = 0.012
-MARK_WIDTH = 0.03
+LINE_WIDTH, MARK_WIDTH = 0.012, 0.03
 """Widths of the lines at every meter, and of every fifth line across the walk [m]."""
 
 

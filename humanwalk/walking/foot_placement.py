@@ -107,12 +107,8 @@ class StepPlacement:
         """
         outward = OUTWARD[stance]
         width = outward * desired.imag
-        excess = max(
-            self.min_width - self.speedup_crossing - width,
-            width - self.speedup_width,
-            abs(desired.real) - SPEEDUP_LENGTH,
-            0.0,
-        )
+        sideways_excess = max(self.min_width - self.speedup_crossing - width, width - self.speedup_width)
+        excess = max(sideways_excess, abs(desired.real) - SPEEDUP_LENGTH, 0.0)
         x = clip(desired.real, -MAX_LENGTH, MAX_LENGTH)
         has_passed = foot.real * x > 0.0
         min_width = max(self.min_step_width(x), self.min_step_width(foot.real)) if has_passed else self.min_width

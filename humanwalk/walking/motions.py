@@ -60,9 +60,6 @@ class PlanarMotion(NamedTuple):
 
     def with_sideways_of(self, other: PlanarMotion, direction: complex) -> PlanarMotion:
         """This motion along a unit vector, combined with another motion across it."""
-        return PlanarMotion(
-            *(
-                direction * complex((along / direction).real, (across / direction).imag)
-                for along, across in zip(self, other, strict=True)
-            )
-        )
+        pairs = zip(self, other, strict=True)
+        parts = (complex((along / direction).real, (across / direction).imag) for along, across in pairs)
+        return PlanarMotion(*(direction * part for part in parts))

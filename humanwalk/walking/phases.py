@@ -21,22 +21,13 @@ STOP_SPEED = 0.05
 
 
 class PhaseTransitions:
-    """Transitions between the phases.
-
-    Args:
-        parameters: Parameters of the planner.
-        ankle_height: Height of the ankle of a flat foot above the ground [m].
-        first_swing: The foot of the first step.
-        terrain: The ground.
-    """
+    """Transitions between the phases; the arguments are those of `StepPlanner`."""
 
     def __init__(
         self, parameters: StepPlannerParameters, ankle_height: float, first_swing: Side, terrain: Terrain
     ) -> None:
-        self._parameters = parameters
-        self._ankle_height = ankle_height
-        self._first_swing = first_swing
-        self._terrain = terrain
+        self._parameters, self._ankle_height = parameters, ankle_height
+        self._first_swing, self._terrain = first_swing, terrain
 
     def start(self, body: BodyState, heading: float) -> PlannerState:
         """Standing on both feet, at the start of a path along a heading [rad]."""
@@ -78,13 +69,8 @@ class PhaseTransitions:
         """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
         foot = body.foot(state.swing_side)
-        profile = SwingProfile.from_toe_off(
-            foot,
-            state.old_foot.ground + self._ankle_height,
-            swing.touchdown_pitch(command.forward),
-            self._parameters.timing.single_support,
-            swing,
-        )
+        flat_height, toe_up = state.old_foot.ground + self._ankle_height, swing.touchdown_pitch(command.forward)
+        profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, self._parameters.timing.single_support, swing)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
         return state._replace(
             phase=Phase.SINGLE_SUPPORT,

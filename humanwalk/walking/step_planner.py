@@ -58,10 +58,8 @@ class StepPlanner:
     ) -> None:
         self.parameters = parameters
         self.frequency = natural_frequency(parameters.height.walking * standing_com_height)
-        self._standing_com_height = standing_com_height
-        self._leg_length = leg_length
-        self._period = period
-        self._terrain = terrain
+        self._standing_com_height, self._leg_length = standing_com_height, leg_length
+        self._period, self._terrain = period, terrain
         self._phases = PhaseTransitions(parameters, ankle_height, first_swing, terrain)
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
