@@ -36,6 +36,10 @@ class FootForce(NamedTuple):
         return np.array((*self.f_W, *self.p_WCop, self.free_moment, self.loaded))
 
 
+NO_FORCE = FootForce(np.zeros(3), np.zeros(3), 0.0, False, 0.0)
+"""Ground reaction on a foot in the air."""
+
+
 def foot_force(p_WQ: Array, f_W: Array, terrain: Terrain, m_W: Array | float = 0.0) -> FootForce:
     """Return the ground reaction on a foot that is touched at k points.
 
@@ -49,11 +53,12 @@ def foot_force(p_WQ: Array, f_W: Array, terrain: Terrain, m_W: Array | float = 0
         m_W: Moment on the foot at each point [N m], shape (k, 3).
     """
     f_total = f_W.sum(axis=0)
+    unloaded = FootForce(f_total, *NO_FORCE[1:])
     weight = np.linalg.norm(f_W, axis=1)
-    unloaded = FootForce(f_total, np.zeros(3), 0.0, False, 0.0)
-    if weight.sum() <= UNLOADED_N:
+    total = weight.sum()
+    if total <= UNLOADED_N:
         return unloaded
-    p_WS = weight @ p_WQ / weight.sum()
+    p_WS = weight @ p_WQ / total
     p_WS[2] = terrain.height(p_WS[:2])
     R_SW = terrain.axes(p_WS[:2])
     f_x, f_y, f_n = R_SW @ f_total

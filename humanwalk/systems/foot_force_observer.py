@@ -9,7 +9,7 @@ from pydrake.systems.framework import Context, LeafSystem
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import LEGS
-from humanwalk.contact.ground_force import FootForce, foot_force
+from humanwalk.contact.ground_force import NO_FORCE, FootForce, foot_force
 from humanwalk.numerics import Array
 from humanwalk.systems.foot_signals import declare_foot_signals
 from humanwalk.terrain import Terrain
@@ -78,9 +78,10 @@ class FootForceObserver(LeafSystem):
             # The force is that on M, at the centroid.
             N, M = self._body_of_geometry[surface.id_N()], self._body_of_geometry[surface.id_M()]
             add(N, M, surface.centroid(), F.translational(), F.rotational())
-        feet = []
-        for side in SIDES:
-            p_WQ, f_W, m_W = np.array(contacts[side]).reshape(-1, 3, 3).swapaxes(0, 1)
-            sign = np.array(signs[side])[:, None]
-            feet.append(foot_force(p_WQ, sign * f_W, self._terrain, sign * m_W))
-        return feet
+        feet = dict.fromkeys(SIDES, NO_FORCE)
+        for side in feet:
+            if contacts[side]:
+                p_WQ, f_W, m_W = np.array(contacts[side]).swapaxes(0, 1)
+                sign = np.array(signs[side])[:, None]
+                feet[side] = foot_force(p_WQ, sign * f_W, self._terrain, sign * m_W)
+        return list(feet.values())
