@@ -112,8 +112,8 @@ class BalancedController:
         planner = world.add(
             "planner",
             GaitPlanner(world.model, self.planner, self.first_swing, self.control_period, world.terrain),
-            state=world.state,
             com=world.port("body_observer", "com"),
+            ankles=world.port("body_observer", "ankles"),
             foot_forces=world.port("foot_contact", "foot_forces"),
             command=command.GetOutputPort("command"),
         )

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, MultibodyForces
 
-from humanwalk.body import SIDES, Side
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import cross_matrix
-from humanwalk.numerics.scalars import clip
-from humanwalk.terrain import Terrain
-from humanwalk.walking.walking_reference import BodyState, FootState
 
 BY_V = JacobianWrtVariable.kV
 ORIGIN = np.zeros(3)
-Vector = Sequence[float]
 
 
 class PointMotion(NamedTuple):
@@ -102,7 +95,6 @@ class BodyDynamics:
         self.bodies = (PELVIS, CHEST, *(body for leg in LEGS.values() for body in leg.foot_bodies))
         bodies = [plant.GetBodyByName(name) for name in self.bodies]
         self._frames = [(body.body_frame(), int(body.index())) for body in bodies]
-        self._ankles = {side: plant.GetFrameByName(LEGS[side].hindfoot) for side in SIDES}
         self._damping = np.zeros(plant.num_velocities())
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
@@ -134,38 +126,3 @@ class BodyDynamics:
             bias=h[3:6] / self.mass - self._upward[3:6],
         )
         return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
-
-    def body_state(self, state: Array, com: Array, foot_forces: Mapping[Side, float], terrain: Terrain) -> BodyState:
-        """The measured state for the step planner.
-
-        Args:
-            state: plant state [q; v].
-            com: position [m] and velocity [m/s] of the center of mass in W, (6,).
-            foot_forces: vertical ground reaction forces [N].
-            terrain: relative to its axes are yaw and pitch of the feet.
-        """
-        self.plant.SetPositionsAndVelocities(self._context, state)
-        ankles = [self._ankles[side] for side in SIDES]
-        X_WF = np.array([ankle.CalcPoseInWorld(self._context).GetAsMatrix34() for ankle in ankles])
-        V_WF = np.array([ankle.CalcSpatialVelocityInWorld(self._context).get_coeffs() for ankle in ankles])
-        R_SW = terrain.axes(X_WF[:, :2, 3])
-        forward_S, w_S = np.matvec(R_SW, X_WF[:, :, 0]), np.matvec(R_SW, V_WF[:, :3])
-        motions = (part.tolist() for part in (X_WF[:, :, 3], V_WF[:, 3:], forward_S, w_S))
-        forces = (foot_forces[side] for side in SIDES)
-        x, y, z, vx, vy, _ = com.tolist()
-        return BodyState(complex(x, y), complex(vx, vy), z, *map(_foot_state, *motions, forces))
-
-
-def _foot_state(p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float) -> FootState:
-    """A foot from position and velocity of its ankle in W, and x axis and angular velocity in the terrain's axes."""
-    yaw = math.atan2(forward_S[1], forward_S[0])
-    return FootState(
-        position=complex(p[0], p[1]),
-        velocity=complex(v[0], v[1]),
-        height=p[2],
-        height_rate=v[2],
-        yaw=yaw,
-        pitch=math.asin(clip(-forward_S[2], -1.0, 1.0)),
-        pitch_rate=math.cos(yaw) * w_S[1] - math.sin(yaw) * w_S[0],
-        force=force,
-    )

@@ -6,6 +6,7 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
+from humanwalk.numerics import Array
 from humanwalk.systems.signal import Signal, xyz
 
 
@@ -18,6 +19,8 @@ class BodyObserver(LeafSystem):
     Outputs:
         soles: (6) position of the right, then the left sole frame in W [m].
         com: (6) position [m], then velocity [m/s] of the center of mass in W.
+        ankles: (24) of the right, then the left ankle in W: position [m], velocity [m/s], x axis of the hindfoot and
+            its angular velocity [rad/s].
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
@@ -26,17 +29,21 @@ class BodyObserver(LeafSystem):
         self._plant = plant
         self._plant_context = plant.CreateDefaultContext()
         self._soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
+        self._ankles = [plant.GetFrameByName(LEGS[side].hindfoot) for side in SIDES]
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
         com = self.DeclareVectorOutputPort("com", 6, self._calc_com)
+        self.DeclareVectorOutputPort("ankles", 24, self._calc_ankles)
         self.signals = (
             Signal("soles", soles, tuple(column for side in SIDES for column in xyz(f"{side.lower()}_sole.", "m"))),
             Signal("com", com, (*xyz("com.", "m"), *xyz("com.velocity_", "m_s"))),
         )
 
     def _body_at(self, context: Context) -> Context:
-        """The plant's context in the state of the input."""
-        self._plant.SetPositionsAndVelocities(self._plant_context, self._state.Eval(context))
+        """The plant's context in the state of the input; its cache serves all outputs of one state."""
+        state = self._state.Eval(context)
+        if not np.array_equal(state, self._plant.GetPositionsAndVelocities(self._plant_context)):
+            self._plant.SetPositionsAndVelocities(self._plant_context, state)
         return self._plant_context
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:
@@ -48,3 +55,11 @@ class BodyObserver(LeafSystem):
         position = self._plant.CalcCenterOfMassPositionInWorld(body)
         velocity = self._plant.CalcCenterOfMassTranslationalVelocityInWorld(body)
         output.SetFromVector(np.concatenate((position, velocity)))
+
+    def _calc_ankles(self, context: Context, output: BasicVector) -> None:
+        body = self._body_at(context)
+        parts: list[Array] = []
+        for ankle in self._ankles:
+            X_WF, V_WF = ankle.CalcPoseInWorld(body), ankle.CalcSpatialVelocityInWorld(body)
+            parts += X_WF.translation(), V_WF.translational(), X_WF.rotation().col(0), V_WF.rotational()
+        output.SetFromVector(np.concatenate(parts))

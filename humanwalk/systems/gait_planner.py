@@ -7,7 +7,6 @@ from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import LEGS, other_side
-from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Terrain
 from humanwalk.walking.command import Command
@@ -16,8 +15,8 @@ from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootTask, Phase, WalkingReference
 
-FOOT_FORCE_Z = {"Right": 2, "Left": 10}
-"""Elements of `FootForceObserver`'s output that hold the vertical forces."""
+FORCE_Z = 2
+"""Element of a foot in `FootForceObserver`'s output that holds the vertical force."""
 
 POINTS = ("zmp", "dcm", "dcm_reference", "foothold")
 """Points of the reference in the output `balance`."""
@@ -30,8 +29,7 @@ class GaitPlanner(LeafSystem):
     performs before the discrete updates of the same time, so that the controller follows the current plan.
 
     Inputs:
-        state: plant state [q; v].
-        com: (6) see BodyObserver.
+        com, ankles: (6), (24) see BodyObserver.
         foot_forces: (16) see FootForceObserver.
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
 
@@ -60,7 +58,7 @@ class GaitPlanner(LeafSystem):
             terrain: The ground.
         """
         super().__init__()
-        self._dynamics, self._terrain = BodyDynamics(plant), terrain
+        self._terrain = terrain
         upright, leg = plant.CreateDefaultContext(), LEGS[first_swing]
         hip, ankle, sole = (
             float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
@@ -76,8 +74,8 @@ class GaitPlanner(LeafSystem):
             terrain=terrain,
         )
         self._step_duration = parameters.timing.step
-        self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._com = self.DeclareVectorInputPort("com", 6)
+        self._ankles = self.DeclareVectorInputPort("ankles", 24)
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
         self._memory = self.DeclareAbstractState(Value[object]())
@@ -109,9 +107,9 @@ class GaitPlanner(LeafSystem):
         return self._store(state, *self._planner.update(memory, self._body(context), command))
 
     def _body(self, context: Context) -> BodyState:
-        forces = self._foot_forces.Eval(context)
-        vertical = {side: float(forces[FOOT_FORCE_Z[side]]) for side in SIDES}
-        return self._dynamics.body_state(self._state.Eval(context), self._com.Eval(context), vertical, self._terrain)
+        ankles = self._ankles.Eval(context).reshape(2, 4, 3)
+        forces = self._foot_forces.Eval(context).reshape(2, 8)
+        return BodyState.measured(self._com.Eval(context), ankles, forces[:, FORCE_Z], self._terrain)
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)

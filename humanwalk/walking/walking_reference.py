@@ -4,13 +4,22 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 origin at the ankle, and the axes of W when the foot stands flat and faces +x.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Self
 
+import numpy as np
+
 from humanwalk.body import Side
+from humanwalk.numerics import Array
+from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import GRAVITY
+from humanwalk.terrain.terrain import Terrain
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion
+
+Vector = Sequence[float]
 
 
 class Phase(Enum):
@@ -72,6 +81,37 @@ class BodyState:
     def foot(self, side: Side) -> FootState:
         """The foot of a side."""
         return self.right if side == "Right" else self.left
+
+    @staticmethod
+    def measured(com: Array, ankles: Array, foot_forces: Array, terrain: Terrain) -> "BodyState":
+        """Return the measured state.
+
+        Args:
+            com: Position [m] and velocity [m/s] of the center of mass in W, shape (6,).
+            ankles: See `BodyObserver`, shape (2, 4, 3).
+            foot_forces: Vertical ground reaction force on the right and the left foot [N], shape (2,).
+            terrain: The ground.
+        """
+        p_W, v_W, forward_W, w_W = ankles.swapaxes(0, 1)
+        R_SW = terrain.axes(p_W[:, :2])
+        motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), foot_forces)
+        x, y, z, vx, vy, _ = com.tolist()
+        return BodyState(complex(x, y), complex(vx, vy), z, *map(_foot, *(part.tolist() for part in motions)))
+
+
+def _foot(p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float) -> FootState:
+    """A foot from position and velocity of its ankle in W, and x axis and angular velocity in the terrain's axes."""
+    yaw = math.atan2(forward_S[1], forward_S[0])
+    return FootState(
+        position=complex(p[0], p[1]),
+        velocity=complex(v[0], v[1]),
+        height=p[2],
+        height_rate=v[2],
+        yaw=yaw,
+        pitch=math.asin(clip(-forward_S[2], -1.0, 1.0)),
+        pitch_rate=math.cos(yaw) * w_S[1] - math.sin(yaw) * w_S[0],
+        force=force,
+    )
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Dynamics and measured state of the body against Drake's own quantities."""
+"""Dynamics of the body against Drake's own quantities."""
 
 from typing import Any
 
@@ -8,13 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydrake.multibody.plant import MultibodyPlant
 
-from humanwalk.body.limbs import LEGS, PELVIS
+from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.numerics import Array
-from humanwalk.numerics.rotation import yaw_pitch
-from humanwalk.terrain import Plane
-
-NO_FORCES = {"Right": 0.0, "Left": 0.0}
 
 
 @pytest.fixture(scope="module")
@@ -46,21 +42,3 @@ def test_accelerations_are_the_differences_of_the_velocities(dynamics: Any, plan
         difference = (of(after).velocity - of(before).velocity) / (2 * h)  # type: ignore[no-untyped-call]
         np.testing.assert_allclose(here.J @ vdot + here.bias, difference, rtol=0, atol=1e-5)
         np.testing.assert_allclose(here.J @ v, here.velocity, rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("slope", [-0.3, 0.0, 0.2])
-@pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.3), (-1.0, -0.2)])
-def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
-    dynamics: Any, plant: Any, slope: float, yaw: float, pitch: float
-) -> None:
-    """With all joints at zero the feet have the orientation of the pelvis."""
-    context, terrain = plant.CreateDefaultContext(), Plane(slope=slope)
-    R_WF = terrain.axes(np.zeros(2)).T @ yaw_pitch(yaw, pitch)
-    pelvis = plant.GetBodyByName(PELVIS)
-    X_WP = pelvis.EvalPoseInWorld(context)
-    X_WP.set_rotation(type(X_WP.rotation())(R_WF))
-    plant.SetFreeBodyPose(context, pelvis, X_WP)
-    body = dynamics.body_state(plant.GetPositionsAndVelocities(context), np.zeros(6), NO_FORCES, terrain)
-    for foot in (body.right, body.left):
-        assert (foot.yaw, foot.pitch) == pytest.approx((yaw, pitch), abs=1e-9)
-        assert foot.pitch_rate == pytest.approx(0.0, abs=1e-9)

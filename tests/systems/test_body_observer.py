@@ -10,9 +10,13 @@ from hypothesis import strategies as st
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
+from humanwalk.body.limbs import PELVIS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.terrain import Plane
+from humanwalk.walking.walking_reference import BodyState
 
 seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
@@ -99,3 +103,25 @@ def test_each_port_has_a_signal_with_a_column_per_element(observer: BodyObserver
     assert [signal.name for signal in observer.signals] == ["soles", "com"]
     assert all(len(signal.columns) == signal.port.size() for signal in observer.signals)
     assert observer.signals[0].columns[3] == "left_sole.x_m"
+
+
+@pytest.mark.parametrize("slope", [-0.3, 0.0, 0.2])
+@pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.3), (-1.0, -0.2)])
+def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
+    observer: BodyObserver, plant: Any, slope: float, yaw: float, pitch: float
+) -> None:
+    """With all joints at zero the feet have the orientation of the pelvis."""
+    context, terrain = plant.CreateDefaultContext(), Plane(slope=slope)
+    R_WF = terrain.axes(np.zeros(2)).T @ yaw_pitch(yaw, pitch)
+    pelvis = plant.GetBodyByName(PELVIS)
+    X_WP = pelvis.EvalPoseInWorld(context)
+    X_WP.set_rotation(type(X_WP.rotation())(R_WF))
+    plant.SetFreeBodyPose(context, pelvis, X_WP)
+    observed = observer.CreateDefaultContext()
+    observer.GetInputPort("state").FixValue(observed, plant.GetPositionsAndVelocities(context))
+    ankles = observer.GetOutputPort("ankles").Eval(observed).reshape(2, 4, 3)
+    body = BodyState.measured(observer.GetOutputPort("com").Eval(observed), ankles, np.array((1.0, 2.0)), terrain)
+    assert (body.right.force, body.left.force) == (1.0, 2.0)
+    for foot in (body.right, body.left):
+        assert (foot.yaw, foot.pitch) == pytest.approx((yaw, pitch), abs=1e-9)
+        assert foot.pitch_rate == pytest.approx(0.0, abs=1e-9)

@@ -6,6 +6,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
+from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -22,21 +23,23 @@ def planner(plant: MultibodyPlant) -> GaitPlanner:
 def simulator_of(planner: GaitPlanner, plant: MultibodyPlant, command: tuple[float, ...]) -> Simulator:
     simulator = Simulator(planner)
     context = simulator.get_mutable_context()
-    standing = plant.CreateDefaultContext()
-    planner.GetInputPort("state").FixValue(context, plant.GetPositionsAndVelocities(standing))
-    com = np.concatenate((plant.CalcCenterOfMassPositionInWorld(standing), np.zeros(3)))
-    planner.GetInputPort("com").FixValue(context, com)
+    observer = BodyObserver(plant)
+    standing = observer.CreateDefaultContext()
+    state = plant.GetPositionsAndVelocities(plant.CreateDefaultContext())
+    observer.GetInputPort("state").FixValue(standing, state)
+    for name in ("com", "ankles"):
+        planner.GetInputPort(name).FixValue(context, observer.GetOutputPort(name).Eval(standing))
     planner.GetInputPort("foot_forces").FixValue(context, np.zeros(16))
     planner.GetInputPort("command").FixValue(context, np.array(command, dtype=float))
     simulator.Initialize()
     return simulator
 
 
-def test_ports(planner: GaitPlanner, plant: MultibodyPlant) -> None:
+def test_ports(planner: GaitPlanner) -> None:
     inputs = [planner.get_input_port(i) for i in range(planner.num_input_ports())]
     assert [(port.get_name(), port.size()) for port in inputs] == [
-        ("state", plant.num_multibody_states()),
         ("com", 6),
+        ("ankles", 24),
         ("foot_forces", 16),
         ("command", 3),
     ]

@@ -10,12 +10,13 @@ from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
+from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.step_planner import StepPlanner
-from humanwalk.walking.walking_reference import WalkingReference
+from humanwalk.walking.walking_reference import BodyState, WalkingReference
 
 PERIOD = 0.004
 
@@ -36,9 +37,12 @@ def standing(plant: MultibodyPlant, joints: JointMap) -> Array:
 
 
 @pytest.fixture
-def plan(controller: WholeBodyController, standing: Array) -> WalkingReference:
-    com = np.concatenate((controller._dynamics.at(standing).com.position, np.zeros(3)))
-    body = controller._dynamics.body_state(standing, com, {"Right": 350.0, "Left": 350.0}, Plane())
+def plan(plant: MultibodyPlant, standing: Array) -> WalkingReference:
+    observer = BodyObserver(plant)
+    context = observer.CreateDefaultContext()
+    observer.GetInputPort("state").FixValue(context, standing)
+    com, ankles = (observer.GetOutputPort(name).Eval(context) for name in ("com", "ankles"))
+    body = BodyState.measured(com, ankles.reshape(2, 4, 3), np.full(2, 350.0), Plane())
     planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
     return planner.update(planner.start(body), body, Command())[1]
 
