@@ -220,10 +220,10 @@ def _iterate(
 def _newton_step(leg: LegKinematics, theta: Array, J: Array, G: Array, damping: float, pull: float) -> Array:
     """Step -J+ G - (1 - J+ J) pull theta with the damped inverse J+ = J^T (J J^T + damping^2)^-1; shape (n,)."""
     back = -pull * theta
-    damping_squared = (damping**2 + MIN_DAMPING**2) * np.eye(len(G))
+    added = (damping**2 + MIN_DAMPING**2) * np.eye(len(G))
 
     def step_of(J: Array) -> Array:
-        step: Array = back - J.T @ np.linalg.solve(J @ J.T + damping_squared, G + J @ back)
+        step: Array = back - J.T @ np.linalg.solve(J @ J.T + added, G + J @ back)
         return step
 
     return _within_ranges(leg, theta, J, step_of)
@@ -248,8 +248,8 @@ def joint_velocity(
     V = ROW_WEIGHTS * V_PS_desired
 
     def velocity_of(J: Array) -> Array:
-        U, s, Vt = np.linalg.svd(J, full_matrices=False)
-        velocity: Array = Vt.T @ (s / np.maximum(s, SINGULAR_VALUE_FLOOR) ** 2 * (U.T @ V))
+        squares, U = np.linalg.eigh(J @ J.T)  # of the singular values; left singular vectors
+        velocity: Array = J.T @ (U / np.maximum(squares, SINGULAR_VALUE_FLOOR**2) @ (U.T @ V))
         return velocity
 
     return _within_ranges(leg, theta, J, velocity_of)
@@ -264,10 +264,12 @@ def _within_ranges(leg: LegKinematics, theta: Array, J: Array, motion: Callable[
         J: Jacobian, shape (6, n).
         motion: motion of the joints for a Jacobian; the columns of joints that are held are zero.
     """
+    at_lower, at_upper = theta <= leg.lower, theta >= leg.upper
+    result = motion(J)
+    if not (at_lower | at_upper).any():
+        return result
     free = np.ones(theta.size)
-    while True:
-        result = free * motion(free * J)
-        outward = ((theta <= leg.lower) & (result < 0)) | ((theta >= leg.upper) & (result > 0))
-        if not outward.any():
-            return result
+    while (outward := (at_lower & (result < 0)) | (at_upper & (result > 0))).any():
         free[outward] = 0.0
+        result = free * motion(free * J)
+    return result

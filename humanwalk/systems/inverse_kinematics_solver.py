@@ -112,7 +112,7 @@ class InverseKinematicsSolver(LeafSystem):
         status = np.empty((3, len(self._legs)))
         targets = self._sole_targets.Eval(context).reshape(len(self._legs), 13)
         for i, ((leg, joints), target) in enumerate(zip(self._legs, targets, strict=True)):
-            wxyz, p_PS, V_PS = np.split(target, (4, 7))
+            wxyz, p_PS, V_PS = target[:4], target[4:7], target[7:]
             X_PS = RigidTransform(Quaternion(wxyz / np.linalg.norm(wxyz)), p_PS)
             solution = solve_inverse_kinematics(leg, X_PS, guess[joints], self._parameters)
             q[joints] = solution.theta
