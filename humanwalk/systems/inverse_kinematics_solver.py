@@ -108,7 +108,7 @@ class InverseKinematicsSolver(LeafSystem):
 
     def _solve(self, guess: Array, context: Context, discrete: DiscreteValues) -> EventStatus:
         posture = self._posture.Eval(context) if self._posture.HasValue(context) else np.zeros(2 * self._n)
-        q, v = np.split(posture, 2)
+        q, v = posture[: self._n], posture[self._n :]
         status = np.empty((3, len(self._legs)))
         targets = self._sole_targets.Eval(context).reshape(len(self._legs), 13)
         for i, ((leg, joints), target) in enumerate(zip(self._legs, targets, strict=True)):
