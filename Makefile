@@ -1,6 +1,6 @@
 # Every target first creates .venv with the packages of requirements.lock.
 .DEFAULT_GOAL := help
-.PHONY: help walk test coverage lint docs gallery lock clean
+.PHONY: help walk test coverage fuzz lint docs gallery lock clean
 
 BIN := .venv/bin
 ARGS ?=
@@ -18,6 +18,10 @@ test: .venv/.installed ## Run the tests; PYTEST_ARGS="..." replaces the options
 
 coverage: .venv/.installed ## Run the tests and print the share of humanwalk/ that they execute
 	@DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 $(BIN)/pytest --cov $(PYTEST_ARGS)
+
+fuzz: .venv/.installed ## Try random hostile files for ten minutes (HUMANWALK_FUZZ_SECONDS)
+	@HUMANWALK_FUZZ_SECONDS=$${HUMANWALK_FUZZ_SECONDS:-600} DRAKE_ALLOW_NETWORK=meshcat:package_map OMP_NUM_THREADS=1 \
+		$(BIN)/pytest tests/fuzz
 
 lint: .venv/.installed ## Check style, types and import layers
 	$(BIN)/ruff check

@@ -62,7 +62,8 @@ def require_inside(folder: Path, path: Path) -> Path:
         ParameterError: it leads outside, by its name or by a symbolic link.
     """
     with file_errors(path, "a path inside the folder"):
-        inside = path.resolve().is_relative_to(folder.resolve())
+        # Path.resolve raises RuntimeError for a link to itself.
+        inside = Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
     if not inside:
         raise ParameterError(
             f"{printable(path)}: leads out of {printable(folder)}; allowed: files of that folder; remove the link"

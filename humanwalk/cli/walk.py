@@ -21,7 +21,7 @@ from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
-from humanwalk.view.replay import make_meshcat, static_page
+from humanwalk.view.replay import MAX_TITLE, make_meshcat, static_page
 
 EXTERNAL_SUPPORT = "EXTERNAL SUPPORT"
 """Shown for every run that had it, even before there is a value."""
@@ -75,7 +75,8 @@ def walk_and_write(
     duration = run.summary["duration_s"]
     with console.status("writing replay and plots"):
         if replay and meshcat is not None:
-            write_text(path / REPLAY, static_page(meshcat, f"{name}: {loaded.description}, {duration:g} s"))
+            title = printable(f"{name}: {loaded.description}, {duration:g} s", MAX_TITLE)
+            write_text(path / REPLAY, static_page(meshcat, title))
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))
@@ -92,9 +93,9 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
         ParameterError: The recording cannot be read.
     """
     time = read_motion_table(recording).time
-    recorded = {"angles": str(recording.resolve()), "kinematic": kinematic}
+    recorded = {"angles": str(recording.absolute()), "kinematic": kinematic}
     if mapping is not None:
-        recorded["mapping"] = str(mapping.resolve())
+        recorded["mapping"] = str(mapping.absolute())
     # JSON is YAML, and quotes any character in a path.
     return {
         "controller": json.dumps({"recorded": recorded}),

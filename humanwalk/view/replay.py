@@ -30,6 +30,9 @@ CAMERA_FIELD_OF_VIEW_DEG = 27.0
 
 LOOPS = 1_000_000
 
+MAX_TITLE = 200
+"""Longest title of a page [characters]."""
+
 MAX_PAGE_BYTES = 150_000_000
 """Largest replay page that is read; ten minutes at 32 frames per second have 110 MB."""
 
@@ -99,7 +102,7 @@ def safe_page(page: Path) -> str:
         raise ParameterError(
             f"{printable(page)}: no recording; allowed: a page that `humanwalk walk` wrote; run it again"
         ) from None
-    return replay_page(commands, printable(html.unescape(title[1]), 200) if title else "")
+    return replay_page(commands, printable(html.unescape(title[1]), MAX_TITLE) if title else "")
 
 
 def replay_page(commands: Sequence[str], title: str) -> str:
