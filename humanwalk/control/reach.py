@@ -49,7 +49,7 @@ def require_reachable(subject: Subject, path: FootPathParameters, parameters: In
             raise ParameterError(
                 f"controller.thesis.gait.path.toe_drop: {path.toe_drop:g} puts the toes {-100 * clearance:.1f} cm "
                 f"into the ground at phase {phase:.2f}; allowed with step_height {path.step_height:g}: 0 to about "
-                f"{0.8 * np.arcsin(min(1.0, path.step_height / toe)):.2f} rad; lower it, or lift the foot higher"
+                f"{0.8 * path.step_height / toe:.2f} rad; lower it, or lift the foot higher"
             )
         X_PS = RigidTransform(
             RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0]),
