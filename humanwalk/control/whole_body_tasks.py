@@ -16,7 +16,6 @@ from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import rotation_vector, yaw_pitch
 from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 
-UPRIGHT = np.eye(3)
 REST = np.zeros(3)
 
 
