@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from humanwalk.bench import read_result
-from humanwalk.bench.result import COLUMNS
+from humanwalk.bench.result import COLUMNS, read_result
 from humanwalk.files import write_text
 
 ROOT = Path(__file__).parents[1]

@@ -21,7 +21,7 @@ from humanwalk.cli.common import (
 from humanwalk.quantity import ParameterError
 
 if TYPE_CHECKING:
-    from humanwalk.bench import BenchResult
+    from humanwalk.bench.result import BenchResult
 
 
 @app.command(
@@ -85,7 +85,7 @@ def bench(
     ] = None,
 ) -> None:
     """Measure the cost of scenarios: plant, solvers, other systems, logging, start-up, memory."""
-    from humanwalk.bench import bench as measure
+    from humanwalk.bench.measure import bench as measure
     from humanwalk.bench.result import comparison_table, read_result, write_result
     from humanwalk.scenario import shipped_scenarios
 

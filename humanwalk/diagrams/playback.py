@@ -8,10 +8,10 @@ from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
 from humanwalk.body.plant import add_human
 from humanwalk.choices.world import World
+from humanwalk.diagrams.world import built
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
-from humanwalk.systems.signal import signals_of
 
 
 def make_playback(scenario: Scenario) -> Diagram:
@@ -56,12 +56,4 @@ def make_playback(scenario: Scenario) -> Diagram:
     to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
     builder.Connect(state, to_pose.get_input_port())
     builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(source))
-    for name, port in (
-        ("state", state),
-        ("query_object", scene_graph.get_query_output_port()),
-        *((signal.name, signal.port) for signal in signals_of(builder.GetSystems())),
-    ):
-        builder.ExportOutput(port, name)
-    diagram = builder.Build()
-    diagram.set_name("playback")
-    return diagram
+    return built(world, "playback", state=state, query_object=scene_graph.get_query_output_port())

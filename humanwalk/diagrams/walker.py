@@ -8,9 +8,8 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from humanwalk.choices.controller import Command
 from humanwalk.choices.pushes import add_pushes
 from humanwalk.diagrams.playback import make_playback
-from humanwalk.diagrams.world import add_world
+from humanwalk.diagrams.world import add_world, built
 from humanwalk.scenario import Scenario
-from humanwalk.systems.signal import signals_of
 
 
 def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
@@ -43,17 +42,14 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     _connect_command(builder, scenario.controller.add_to(world))
     add_pushes(world, scenario.pushes)
     _connect_spatial_forces(builder, world.plant, world.spatial_forces)
-    for name, port in (
-        ("state", world.state),
-        ("net_actuation", world.plant.get_net_actuation_output_port()),
-        ("contact_results", world.plant.get_contact_results_output_port()),
-        ("query_object", world.scene_graph.get_query_output_port()),
-        *((signal.name, signal.port) for signal in signals_of(builder.GetSystems())),
-    ):
-        builder.ExportOutput(port, name)
-    diagram = builder.Build()
-    diagram.set_name("walker")
-    return diagram
+    return built(
+        world,
+        "walker",
+        state=world.state,
+        net_actuation=world.plant.get_net_actuation_output_port(),
+        contact_results=world.plant.get_contact_results_output_port(),
+        query_object=world.scene_graph.get_query_output_port(),
+    )
 
 
 def make_diagram(scenario: Scenario, visuals: bool = True) -> Diagram:

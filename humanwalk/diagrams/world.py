@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 from pydrake.geometry import SceneGraph
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, DiscreteContactApproximation, MultibodyPlant
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.choices.contact import exclude_unused_contact_sets
@@ -15,6 +15,7 @@ from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
+from humanwalk.systems.signal import signals_of
 
 APPROXIMATIONS = {
     "sap": DiscreteContactApproximation.kSap,
@@ -76,6 +77,16 @@ def add_world(builder: DiagramBuilder, scenario: Scenario, visuals: bool = True)
     world.add("body_observer", BodyObserver(plant), state=world.state)
     contact.add_to(world)
     return world
+
+
+def built(world: World, name: str, **ports: OutputPort) -> Diagram:
+    """Build the diagram of a world, which exports `ports` and every `Signal` of its subsystems under their names."""
+    signals = [(signal.name, signal.port) for signal in signals_of(world.builder.GetSystems())]
+    for exported, port in (*ports.items(), *signals):
+        world.builder.ExportOutput(port, exported)
+    diagram = world.builder.Build()
+    diagram.set_name(name)
+    return diagram
 
 
 def remove_visuals(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:

@@ -33,10 +33,7 @@ def joint_power(signals: pa.Table) -> Array:
 def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | None:
     """Mechanical cost of transport: time integral of sum |torque x rate| over m g d, without recovery of negative work.
 
-    Args:
-        signals: the record.
-        rows: which rows count.
-        mass: of the body [kg].
+    Only the chosen rows of the record count; the mass is the body's [kg].
     """
     if rows.sum() < 2:
         return None
@@ -50,12 +47,7 @@ def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | Non
 def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
-    Args:
-        signals: the record.
-        touchdowns: rows at which a stride ends and the next begins.
-
-    Returns:
-        The work by joint, None without a stride.
+    Strides end and begin at the rows `touchdowns`; without a stride there is None.
     """
     strides = len(touchdowns) - 1
     if strides < 1:

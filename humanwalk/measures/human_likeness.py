@@ -239,11 +239,7 @@ def late_stance_knee(strides: Array) -> Array:
 
 
 def vertical_force(signals: pa.Table, side: Side, weight: float) -> Array:
-    """Vertical force on a foot below FORCE_CUTOFF_HZ, without the impact of the heel [body weights], shape (rows,).
-
-    Args:
-        weight: of the body [N].
-    """
+    """Vertical force on a foot below FORCE_CUTOFF_HZ, without the impact of the heel, over `weight` [N], (rows,)."""
     force: Array = signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / weight
     rate = 1.0 / float(np.median(np.diff(signals[TIME].to_numpy())))
     # A record of fewer than two samples per period of the cutoff holds nothing above it.

@@ -12,7 +12,6 @@ from humanwalk.quantity import ParameterError
 
 TIME = "time_s"
 
-
 UNITS = {"N_m": "N m", "rad_s": "rad/s", "m_s": "m/s", "rad": "rad", "m": "m", "N": "N", "s": "s"}
 """Units by how a column's name ends."""
 _UNIT = re.compile(f"_({'|'.join(UNITS)})$")

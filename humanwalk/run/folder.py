@@ -227,13 +227,7 @@ def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: Summar
     """Write a simulation into its folder, each file whole or not at all.
 
     The summary comes last: a folder that has one is a complete run. A followed recording and its mapping are copied
-    into the folder, and the scenario in the folder follows the copies.
-
-    Args:
-        path: the folder.
-        scenario: what was simulated.
-        signals: the record.
-        summary: its measures, see `humanwalk.measures.summary.summarize`; the provenance is added.
+    into the folder, and the scenario in the folder follows the copies. The provenance is added to the summary.
     """
     origin = provenance(scenario, signals)
     metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"], **origin}).encode()}

@@ -42,11 +42,7 @@ class Recorder:
         return Recorder(columns, LogVectorOutput(every.get_output_port(), builder, period))
 
     def table(self, context: Context) -> pa.Table:
-        """Everything recorded so far, a row per sample; also after a simulation that ended early.
-
-        Args:
-            context: root context of the simulation.
-        """
+        """Everything recorded so far in a root context, a row per sample; also after a simulation that ended early."""
         log = self.sink.FindLog(context)
         # Copies: the log's memory goes with the context.
         data = dict(zip(self.columns, log.data().copy(), strict=True))

@@ -43,9 +43,7 @@ class Reproduction:
 def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> Reproduction:
     """Re-run the scenario of a run folder; an interrupted run is repeated up to its end.
 
-    Args:
-        run: what is repeated.
-        on_progress: called with the simulated time [s].
+    `on_progress` is called with the simulated time [s].
 
     Raises:
         ParameterError: the scenario cannot be simulated, or its recording is gone.

@@ -23,12 +23,7 @@ MAX_TEXT = 1000
 
 
 def read_json(path: Path, limit: int, kind: Any) -> Any:
-    """Read a JSON file of a type; see `conform`.
-
-    Args:
-        path: the file.
-        limit: its largest size [bytes].
-        kind: type of the data.
+    """Read a JSON file of at most `limit` bytes, whose data are of a type; see `conform`.
 
     Raises:
         ParameterError: it cannot be read, is not JSON, or of another type.

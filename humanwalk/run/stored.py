@@ -57,13 +57,8 @@ def read_summary(path: Path) -> RunSummary:
     """
     summary: RunSummary = read_json(path, MAX_SUMMARY_BYTES, RunSummary)
     joints = {joint.name for joint in human().joints}
-    by_joint = {
-        "peak_torque_N_m": summary["peak_torque_N_m"],
-        "saturated_share": summary["saturated_share"],
-        "tracking_error_rad": summary["tracking_error_rad"],
-    }
-    for name, values in by_joint.items():
-        if values.keys() not in (set(), joints):
+    for name in ("peak_torque_N_m", "saturated_share", "tracking_error_rad"):
+        if summary[name].keys() not in (set(), joints):
             raise _refusal(path, f"{name} does not have the joints of the body")
     return summary
 
@@ -71,13 +66,8 @@ def read_summary(path: Path) -> RunSummary:
 def read_signals(path: Path, scenario: Scenario, sha256: str) -> pa.Table:
     """Read signals.parquet; size, columns and types are checked before the numbers are loaded.
 
-    Args:
-        path: the file.
-        scenario: of the run.
-        sha256: what `signals_hash` of the record has to be.
-
     Raises:
-        ParameterError: it is no record of this scenario, or was changed.
+        ParameterError: it is no record of this scenario, or was changed: its `signals_hash` is not `sha256`.
     """
     content = pa.BufferReader(read_regular(path, MAX_SIGNALS_BYTES))
     try:

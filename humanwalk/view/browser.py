@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal
 
 from humanwalk.body.skeleton import Vector3
 from humanwalk.extras import missing_package
@@ -206,7 +206,14 @@ def open_browser() -> Iterator["Browser"]:
                 executable_path=executable, args=FLAGS, handle_sigint=False, chromium_sandbox=has_sandbox()
             )
         except Error as error:
-            _no_browser(executable, error)
+            if executable is None:
+                raise ParameterError(
+                    "browser: no Chromium or Chrome found; install one (Debian: apt-get install chromium; anywhere: "
+                    f"playwright install chromium), or name it in ${CHROMIUM}"
+                ) from None
+            raise ParameterError(
+                f"browser: {executable} does not start: {_line(error)}; name another Chromium in ${CHROMIUM}"
+            ) from None
         try:
             yield browser
         finally:
@@ -281,17 +288,6 @@ def _evaluate(tab: "Page", function: str, argument: Any, timeout_s: float) -> An
     """Result of a JavaScript function that returns no false value; unlike `Page.evaluate`, with a timeout."""
     result = tab.wait_for_function(function, arg=argument, polling=100.0, timeout=1000.0 * timeout_s)
     return result.json_value()
-
-
-def _no_browser(executable: str | None, error: Exception) -> NoReturn:
-    if executable is not None:
-        raise ParameterError(
-            f"browser: {executable} does not start: {_line(error)}; name another Chromium in ${CHROMIUM}"
-        ) from None
-    raise ParameterError(
-        "browser: no Chromium or Chrome found; install one (Debian: apt-get install chromium; anywhere: "
-        f"playwright install chromium), or name it in ${CHROMIUM}"
-    ) from None
 
 
 def _line(error: Exception) -> str:

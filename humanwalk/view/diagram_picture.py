@@ -24,7 +24,6 @@ def draw_diagram(diagram: Diagram, path: Path, depth: int = 1, every_port: bool 
     """Draw a diagram's systems and connections as SVG, PNG or PDF; the same diagram gives the same picture.
 
     Args:
-        diagram: What to draw.
         path: The picture; its suffix is the format.
         depth: Number of levels of diagrams that are expanded.
         every_port: Whether to draw unconnected ports too; a plant has dozens.

@@ -75,12 +75,7 @@ def make_meshcat(*, live: bool = False) -> Meshcat:
 
 
 def static_page(meshcat: Meshcat, title: str = "humanwalk") -> str:
-    """The recording as one HTML page that needs no network and plays in a loop at true speed.
-
-    Args:
-        meshcat: Holds the recording, which is published.
-        title: Title of the page.
-    """
+    """A Meshcat's recording, published, as one HTML page that needs no network and loops at true speed."""
     recording = meshcat.get_mutable_recording()
     recording.set_loop_mode(MeshcatAnimation.LoopMode.kLoopRepeat)
     recording.set_repetitions(LOOPS)

@@ -16,12 +16,7 @@ LOCALHOST = "127.0.0.1"
 
 
 def serve_replay(run: Path, *, open_browser: bool, console: Console) -> None:
-    """Serve the replay page of a run on this machine only, until Ctrl-C.
-
-    Args:
-        run: Folder of the run.
-        open_browser: Whether to open the page.
-        console: Where its address is printed.
+    """Serve the replay page of a run folder on this machine only, until Ctrl-C; its address is printed.
 
     Raises:
         ParameterError: The folder contains no run, or a run without a replay.

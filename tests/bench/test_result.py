@@ -12,10 +12,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from humanwalk.bench import BenchResult, ScenarioCost, measure, read_result, write_result
+from humanwalk.bench import measure
 from humanwalk.bench.measure import bench, put_together
 from humanwalk.bench.profile import UPSTREAM
-from humanwalk.bench.result import COLUMNS, comparison_table, cost_table, machine, ratios, system_table
+from humanwalk.bench.result import (
+    COLUMNS,
+    BenchResult,
+    ScenarioCost,
+    comparison_table,
+    cost_table,
+    machine,
+    ratios,
+    read_result,
+    system_table,
+    write_result,
+)
 from humanwalk.quantity import ParameterError
 
 

@@ -14,7 +14,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from humanwalk.bench import measure, read_result
+from humanwalk.bench import measure
+from humanwalk.bench.result import read_result
 from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.main import app, main
 from humanwalk.cli.walk import summary_table

@@ -37,13 +37,9 @@ TITLE_SIZE, LABEL_SIZE, TICK_SIZE = 9.5, 9.0, 8.0
 
 
 def new_figure(title: str, height: float = 2.7, rows: int = 1, columns: int = 1, **subplots: Any) -> Figure:
-    """A figure of column width with rows x columns empty axes.
+    """A figure of column width and a height in inches, with rows x columns empty axes.
 
-    Args:
-        title: Title, with the number of the thesis' figure if there is one.
-        height: Height in inches.
-        rows, columns: Number of axes.
-        subplots: Further arguments of `Figure.subplots`, such as sharex.
+    Further arguments, such as sharex, are those of `Figure.subplots`.
     """
     figure = Figure(figsize=(COLUMN_WIDTH, height), layout="constrained")
     figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_SIZE)
@@ -65,16 +61,8 @@ def label(axes: Axes, x: str, y: str) -> None:
 def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
     """Add a legend in one line above the axes, where it hides no curve."""
     entries = list(handles) if handles is not None else axes.get_legend_handles_labels()[0]
-    axes.legend(
-        handles=entries,
-        loc="lower left",
-        bbox_to_anchor=(-0.01, 0.98),
-        ncols=len(entries),
-        frameon=False,
-        fontsize=TICK_SIZE,
-        handlelength=1.6,
-        columnspacing=1.4,
-    )
+    style: dict[str, Any] = {"frameon": False, "fontsize": TICK_SIZE, "handlelength": 1.6, "columnspacing": 1.4}
+    axes.legend(handles=entries, loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=len(entries), **style)
 
 
 def curve(axes: Axes, x: Array, y: Array, **style: Any) -> Line2D:

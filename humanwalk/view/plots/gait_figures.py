@@ -14,7 +14,6 @@ from humanwalk.files import make_folder
 from humanwalk.gait.arc_length import ArcLength
 from humanwalk.gait.splines import CubicHermite
 from humanwalk.gait.thesis_path import LegPath, thesis_path
-from humanwalk.numerics import Array
 from humanwalk.view.plots.drawing import (
     INK,
     REFERENCE,
@@ -46,12 +45,9 @@ CYCLE_SEGMENTS: dict[LegPath, int] = {"forward": 13, "backward": 12}
 
 def cycle_figure(path: LegPath, number: str) -> Figure:
     """One closed cycle with its control points and the triangle that defines them (Eq 4-22)."""
-    points = _control_points(path)
     start = START_SEGMENTS[path]
-    cycle = points[start : start + CYCLE_SEGMENTS[path] + 1]
-    figure = new_figure(
-        f"Figure {number}  {path.capitalize()} path of one cycle with its control points", height=HEIGHT
-    )
+    cycle = _spline(path).position(np.arange(start, start + CYCLE_SEGMENTS[path] + 1))
+    figure = new_figure(f"Figure {number}  {path.capitalize()} path of one cycle with its control points", HEIGHT)
     (axes,) = figure.axes
     triangle = np.array([(0.0, 0.0), (STEP_LENGTH_CM / 2, STEP_HEIGHT_CM), (STEP_LENGTH_CM, 0.0), (0.0, 0.0)])
     curve(axes, *triangle.T, color=REFERENCE, linewidth=0.9, linestyle="--", label="triangle, Eq 4-22")
@@ -74,8 +70,7 @@ def start_figure(path: LegPath, number: str) -> Figure:
     (axes,) = figure.axes
     _draw_segments(axes, path, start, start + CYCLE_SEGMENTS[path], label="steady cycle")
     _draw_segments(axes, path, 0, start, label="start", color=INK, linewidth=1.8)
-    first = _control_points(path)[0]
-    axes.plot(*first, "s", markersize=5, color=INK, label="standing, (L/2, -offset)")
+    axes.plot(*_spline(path).position(np.zeros(1)).T, "s", markersize=5, color=INK, label="standing, (L/2, -offset)")
     _finish(figure)
     return figure
 
@@ -88,13 +83,8 @@ def resampled_figure(path: LegPath, number: str) -> Figure:
     figure = new_figure(title, HEIGHT)
     (axes,) = figure.axes
     _draw_segments(axes, path, 0, spline.segments, label="path", linewidth=0.6)
-    axes.plot(
-        *points.T,
-        ".",
-        markersize=3.5,
-        color=SIDE[PATH_SIDE[path]],
-        label=f"{len(points)} points, 0.01 s apart at 1.4 m/s",
-    )
+    text = f"{len(points)} points, 0.01 s apart at 1.4 m/s"
+    axes.plot(*points.T, ".", markersize=3.5, color=SIDE[PATH_SIDE[path]], label=text)
     _finish(figure)
     return figure
 
@@ -117,11 +107,6 @@ def write_gait_figures(folder: Path) -> list[Path]:
     """
     make_folder(folder)
     return [save(draw(), folder / f"{name}.png", SMALL_DPI) for name, draw in GAIT_FIGURES.items()]
-
-
-def _control_points(path: LegPath) -> Array:
-    spline = _spline(path)
-    return spline.position(np.arange(spline.segments + 1))
 
 
 def _spline(path: LegPath) -> CubicHermite:

@@ -37,7 +37,6 @@ def joint_figure(run: Run, number: str, side: Side, joint: str, quantity: str, u
     """Actual and desired angle [deg], or actuator torque [N m], of a joint; None for a run of fewer than two samples.
 
     Args:
-        run: What is shown.
         number: Number of the thesis' figure.
         side, joint: Which joint; knee or ankle.
         quantity: "angle" or "torque".
