@@ -1,5 +1,6 @@
 """Damaged and malicious run folders: each is read, or refused in one printable line."""
 
+import errno
 import json
 import os
 import shutil
@@ -268,6 +269,23 @@ def test_link_out_of_the_folder_is_refused(folder: Path, tmp_path: Path, name: s
     (folder / name).rename(tmp_path / name)
     (folder / name).symlink_to(tmp_path / name)
     assert "leads out of" in refusal(read, folder)
+
+
+@pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
+def test_link_to_itself_is_refused(folder: Path, name: str) -> None:
+    (folder / name).unlink()
+    (folder / name).symlink_to(name)
+    assert f"{name} is missing" in refusal(read, folder)
+
+
+def test_folder_that_may_not_be_read_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As stat answers there to anybody but root."""
+
+    def denied(path: Path) -> bool:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+
+    monkeypatch.setattr(Path, "is_file", denied)
+    assert "Permission denied; allowed: a run folder that you may read" in refusal(read, folder)
 
 
 @pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])
