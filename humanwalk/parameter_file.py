@@ -33,7 +33,14 @@ class _Loader(yaml.SafeLoader):
     """YAML with the plain scalars of version 1.2: 1e-3 is a number, 1:30 and `no` are text."""
 
 
-_Loader.yaml_implicit_resolvers = {}
+class _Dumper(yaml.SafeDumper):
+    """Quotes what `_Loader` would not read as text; writes every value out."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+_Loader.yaml_implicit_resolvers = _Dumper.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ("bool", r"true|false|True|False", "tfTF"),
     ("null", r"~|null|Null|", "~nN"),
@@ -174,7 +181,7 @@ def build[T](kind: type[T], data: Mapping[str, Any]) -> T:
 
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
-    text: str = yaml.safe_dump(_plain(parameters), sort_keys=False, allow_unicode=True, width=120)
+    text: str = yaml.dump(_plain(parameters), Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120)
     return text
 
 

@@ -75,7 +75,7 @@ MIN_TIME_STEP = 1e-5
 class RecordingParameters:
     """What is kept of a run."""
 
-    signal_period: float = quantity(0.004, "s", 0.0005, 0.1)
+    signal_period: float = quantity(0.006, "s", 0.0005, 0.1)
     """Time between two rows of the signals. The discrete plant changes at multiples of `time_step` only: other periods
     cost evaluations between its steps and show the last one."""
 

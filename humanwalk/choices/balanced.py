@@ -69,8 +69,8 @@ class BalancedController:
     elbow_flexion: float = quantity(0.35, "rad", 0.0, 1.5)
     """Flexion of the elbows while the arms hang."""
 
-    control_period: float = quantity(0.004, "s", 0.001, 0.01)
-    """Time between two plans and solutions."""
+    control_period: float = quantity(0.006, "s", 0.001, 0.01)
+    """Time between two plans and solutions: three steps of the plant. The tables of docs/balance.md hold for it."""
 
     physics = True
 
