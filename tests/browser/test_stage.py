@@ -18,7 +18,7 @@ pytestmark = pytest.mark.browser
 
 WIDTH, HEIGHT = 160, 120
 FRAME_TIMES = (0.12, 0.36)
-"""Times of frames, at 50 per second, at which signals, at 250 per second, are recorded too [s]."""
+"""Times of frames, at 50 per second, at which signals, at 100 per second, are recorded too [s]."""
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from humanwalk.scenario import load_scenario
 
 @pytest.fixture
 def outcome(columns: tuple[str, ...]) -> Outcome:
-    time = 0.004 * np.arange(50)
+    time = 0.01 * np.arange(50)
     signals = pa.table({TIME: time, **{name: np.full_like(time, i) for i, name in enumerate(columns)}})
     return Outcome(load_scenario("thesis", {"seed": "5", "duration": "0.5"}), signals, "completed", wall_time=1.0)
 
