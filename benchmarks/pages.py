@@ -168,6 +168,13 @@ def balance_paths() -> str:
     return table(["scenario", "end", "off the path cm"], rows)
 
 
+def balance_bodies() -> str:
+    rows = [[row["run"], *_walked(row), str(row["qp_failures"])] for row in load("balance_bodies")]
+    return table(
+        ["body, commanded", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "failed programs"], rows
+    )
+
+
 def balance_pushes() -> str:
     return "\n\n".join(_pushes(name) for name in ("balance_pushes", "balance_pushes_60"))
 
@@ -249,7 +256,7 @@ def _contact(walk: str, more: dict[str, tuple[str, ...]]) -> str:
 
 
 PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
-BALANCE = (balance_speeds, balance_paths, balance_pushes, balance_seeds, balance_invariance)
+BALANCE = (balance_speeds, balance_paths, balance_bodies, balance_pushes, balance_seeds, balance_invariance)
 PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
     DOCS / "performance.md": PERFORMANCE,
     DOCS / "balance.md": BALANCE,
