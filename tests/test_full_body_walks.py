@@ -45,6 +45,7 @@ class Walk:
         push = f"{{time: {PUSH_TIME}, duration: {PUSH_DURATION}, impulse: {IMPULSE}, direction: {np.pi / 2}}}"
         text = f"""
             duration: 8.0
+            recording: {{signal_period: 0.004}}
             controller: {{balanced: {{command: {{points: {COMMANDS[name]}}}}}}}
             pushes: {{given: [{push if name == "push" else ""}]}}
         """
