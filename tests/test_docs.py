@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from humanwalk.choices import CONTROLLERS, BalancedController
+from humanwalk.choices import CONTROLLERS, BalancedController, PdActuation
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import tag_of
 from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
@@ -50,8 +50,9 @@ def test_the_block_diagram_of_every_scenario_is_in_the_book(name: str) -> None:
     assert sorted(re.findall(r"name=(\w+)", drawn)) == sorted(re.findall(r"name=(\w+)", graph)), (
         "run docs/make_gallery.py"
     )
-    # A scenario with pushes exports their force, too.
-    assert drawn.count('class="edge"') == graph.count(" -> ") - bool(scenario.pushes.given)
+    # Pushes add the wire of their forces, the implicit law that of the desired state.
+    more = bool(scenario.pushes.given) + (scenario.actuation == PdActuation(law="implicit"))
+    assert drawn.count('class="edge"') == graph.count(" -> ") - more
 
 
 def gains(parameters: Any, path: str = "") -> Iterator[Any]:
