@@ -141,7 +141,7 @@ JOINT_GROUPS: dict[str, tuple[str, ...]] = {
 
 
 def group_of(joint: str) -> str:
-    """Return the group of `JOINT_GROUPS` of a joint (KeyError if there is none)."""
+    """Return the group of `JOINT_GROUPS` that holds a joint; raise KeyError for an unknown joint."""
     return _GROUP_BY_JOINT[joint]
 
 

@@ -189,11 +189,11 @@ class Skeleton:
         return {j.name: j for j in self.joints}
 
     def segment(self, name: str) -> Segment:
-        """Return the segment with a name (KeyError if there is none)."""
+        """Return a segment by its name; raise KeyError for an unknown name."""
         return self._segment_by_name[name]
 
     def joint(self, name: str) -> Joint:
-        """Return the revolute joint with a name (KeyError if there is none)."""
+        """Return a revolute joint by its name; raise KeyError for an unknown name."""
         return self._joint_by_name[name]
 
     def inboard(self, segment_name: str) -> Joint | Weld | None:

@@ -1,4 +1,4 @@
-"""The choices of a scenario: contact, controller and actuation, each of which adds itself to a diagram."""
+"""The choices of a scenario: contact, controller and actuation. Each adds itself to a diagram."""
 
 from humanwalk.choices.actuation import ACTUATIONS, Actuation, PdActuation
 from humanwalk.choices.balanced import BalancedController
