@@ -58,18 +58,19 @@ def walk_and_write(
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
     path, made = new_run_folder(output, name)
-    try:
-        require_room(path, loaded)
-        with claimed(path):
+    # A folder that another run has claimed meanwhile stays: the claim is outside the block that removes the folder.
+    with claimed(path):
+        try:
+            require_room(path, loaded)
             outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
             with held_signals():
                 run = _write_or_rescue(path, outcome, name)
-    except BaseException:
-        # Nothing was recorded: an empty folder would obstruct the next attempt.
-        with suppress(OSError):
-            for folder in made:
-                folder.rmdir()
-        raise
+        except BaseException:
+            # Nothing was recorded: an empty folder would obstruct the next attempt.
+            with suppress(OSError):
+                for folder in made:
+                    folder.rmdir()
+            raise
     if not run.summary["physics"]:
         console.print("no physics: joints and pelvis follow the recording exactly; no forces, torques or balance")
     duration = run.summary["duration_s"]
