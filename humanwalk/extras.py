@@ -4,7 +4,7 @@ from typing import Literal
 
 from humanwalk.quantity import ParameterError
 
-Extra = Literal["c3d", "diagram", "video"]
+Extra = Literal["c3d", "diagram", "slurm", "study", "video"]
 
 
 def install_command(extra: Extra) -> str:
