@@ -11,6 +11,7 @@ from humanwalk.choices.start import StartPosture
 from humanwalk.choices.world import World
 from humanwalk.numerics import Array
 from humanwalk.terrain import Terrain
+from humanwalk.walking.command import CommandParameters
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,10 @@ class Controller(Protocol):
     @property
     def physics(self) -> bool:
         """Whether the body is simulated; else its motion is prescribed (`make_playback`)."""
+
+    @property
+    def command(self) -> CommandParameters | None:
+        """Commanded velocity over time, which describes a path on the ground; None where a reference prescribes it."""
 
     @property
     def commanded_speed(self) -> float | None:

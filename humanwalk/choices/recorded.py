@@ -49,7 +49,7 @@ class RecordedController:
         if not self.angles:
             raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it (--follow FILE)")
 
-    commanded_speed = None
+    command = commanded_speed = None
 
     @property
     def physics(self) -> bool:

@@ -180,6 +180,7 @@ def summary_table(summary: Mapping[str, Any]) -> Table:
         row(f"{side} foot lift", summary["foot_lift_m"][side], ".1f", "cm", per_unit=100)
         row(f"{side} foot lateral deviation", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
     row("lateral drift", summary["lateral_drift_m"], ".2f", "cm", per_unit=100)
+    row("deviation from the path", summary["path_deviation_m"], ".2f", "cm", per_unit=100)
     row("pelvis tracking error, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
     if summary["external_support"]:
         row(f"{EXTERNAL_SUPPORT} force, rms", summary["support_force_rms_N"], ".0f", "N")

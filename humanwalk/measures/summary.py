@@ -11,6 +11,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
+from humanwalk.measures.path import path_deviation
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import printable
@@ -32,6 +33,7 @@ class Summary(TypedDict):
     mean_speed_m_s: float | None
     commanded_speed_m_s: float | None
     lateral_drift_m: float
+    path_deviation_m: float | None
     foot_lift_m: OfFeet
     foot_line_error_m: OfFeet
     steps: int | None
@@ -55,9 +57,9 @@ class Summary(TypedDict):
 def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> Summary:
     """Measure a run.
 
-    Speed, support, tracking and cost are means over the steady walk: from `Controller.steady_from` to the end. They
-    are null for a run that ended before, as is every number that is not finite. Without physics there are no forces:
-    steps, lift, torques and cost are null or empty.
+    Speed, path deviation, support, tracking and cost are those of the steady walk: from `Controller.steady_from` to
+    the end. They are null for a run that ended before, as is every number that is not finite. Without physics there
+    are no forces: steps, lift, torques and cost are null or empty.
 
     Args:
         scenario: what was simulated.
@@ -89,6 +91,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
         "commanded_speed_m_s": controller.commanded_speed,
         "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
+        "path_deviation_m": path_deviation(signals, steady, controller.command),
         "foot_lift_m": of_feet(lambda side: foot_lift(signals, side) if physics else None),
         "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
         "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,

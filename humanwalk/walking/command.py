@@ -74,6 +74,10 @@ class CommandProfile:
         """The command at a time [s]."""
         return Command(*(float(np.interp(time, *ramps)) for ramps in (self._forward, self._sideways, self._turn)))
 
+    def over(self, times: Array) -> tuple[Array, Array, Array]:
+        """Forward and sideways speed [m/s] and turn rate [rad/s] at times [s]; each of the shape of `times`."""
+        return np.interp(times, *self._forward), np.interp(times, *self._sideways), np.interp(times, *self._turn)
+
 
 def _ramps(times: list[float], targets: list[float], rate: float) -> tuple[Array, Array]:
     """Breakpoints (times, values) of a function that moves from 0 towards each target at a constant rate."""

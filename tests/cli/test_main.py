@@ -131,6 +131,7 @@ def test_table_of_a_run_omits_what_it_does_not_have() -> None:
         "foot_lift_m": {"right": 0.1, "left": None},
         "foot_line_error_m": {"right": 0.1, "left": 0.1},
         "lateral_drift_m": 0.0,
+        "path_deviation_m": None,
         "external_support": False,
         "physics": False,
         "realtime_factor": 1.0,
