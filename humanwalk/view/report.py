@@ -1,24 +1,20 @@
 """Comparison of a run with human gait: tables for a terminal, a page with figures, numbers as JSON."""
 
-import html
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from importlib.resources import files
 from pathlib import Path
-from string import Template
 from typing import Any
 
 import numpy as np
 from rich import box
 from rich.table import Table
 
-from humanwalk.files import write_text
 from humanwalk.measures.human_likeness import ANGLES, MIN_STRIDES, Comparison, Likeness, compare
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
+from humanwalk.view.page import notes, numbered_notes, paragraph, picture, table, write_page
 from humanwalk.view.plots import PLOTS
-from humanwalk.view.plots.drawing import svg_data
 
 REPORT = "report.html"
 FIGURES = ("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")
@@ -108,22 +104,20 @@ def write_report(run: Run, comparison: Comparison) -> Path:
         ParameterError: it cannot be written.
     """
     figures = ((name, PLOTS[name](run)) for name in FIGURES)
-    page = Template(files("humanwalk.view").joinpath("report_page.html").read_text(encoding="utf-8")).substitute(
-        title=html.escape(f"{run.path.resolve().name}: comparison with human gait"),
-        description=html.escape(run.scenario.description),
-        strides=html.escape(
-            ", ".join(f"{count} of the {side.lower()} leg" for side, count in comparison.strides.items())
-        ),
-        curves=_html_table(CURVE_HEADER, curve_rows(comparison)),
-        measures=_html_table(MEASURE_HEADER, measure_rows(comparison)),
-        figures="\n".join(
-            f'<img alt="{name}" src="{svg_data(figure, name)}">' for name, figure in figures if figure is not None
-        ),
-        sources=_elements("li", sources(comparison)),
-        notes=_elements("li", NOTES),
-    )
+    strides = ", ".join(f"{count} of the {side.lower()} leg" for side, count in comparison.strides.items())
     path = run.path / REPORT
-    write_text(path, page)
+    write_page(
+        path,
+        f"{run.path.resolve().name}: comparison with human gait",
+        (
+            paragraph(f"{run.scenario.description}. Compared strides: {strides}."),
+            table(CURVE_HEADER, curve_rows(comparison)),
+            table(MEASURE_HEADER, measure_rows(comparison)),
+            numbered_notes(sources(comparison)),
+            *(picture(figure, name) for name, figure in figures if figure is not None),
+            notes(NOTES),
+        ),
+    )
     return path
 
 
@@ -172,12 +166,3 @@ def _spread(values: Array, form: str) -> str:
 
 def _numbers(values: Array) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
-
-
-def _html_table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> str:
-    lines = _elements("th", header), *(_elements("td", row) for row in rows)
-    return "\n".join(("<table>", *(f"<tr>{line}</tr>" for line in lines), "</table>"))
-
-
-def _elements(tag: str, texts: Sequence[str]) -> str:
-    return "".join(f"<{tag}>{html.escape(text)}</{tag}>" for text in texts)
