@@ -16,7 +16,6 @@ from humanwalk.files import write_text
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
-from humanwalk.run.monitor import held_signals
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
@@ -62,15 +61,14 @@ def walk_and_write(
     with claimed(path):
         try:
             require_room(path, loaded)
-            outcome = _simulate_with_progress(loaded, name, path, meshcat, live, checkpoint_period, console)
-            with held_signals():
-                run = _write_or_rescue(path, outcome, name)
+            _simulate_and_write(loaded, name, path, meshcat, live, checkpoint_period, console)
         except BaseException:
             # Nothing was recorded: an empty folder would obstruct the next attempt.
             with suppress(OSError):
                 for folder in made:
                     folder.rmdir()
             raise
+    run = Run.open(path)
     if not run.summary["physics"]:
         console.print("no physics: joints and pelvis follow the recording exactly; no forces, torques or balance")
     duration = run.summary["duration_s"]
@@ -105,14 +103,14 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
     }
 
 
-def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
+def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:
     """Write the run into its folder, or, if that fails, into a temporary one, so that the simulation is not lost.
 
     Raises:
         ParameterError: The run was not written to `path`; the message has the other folder.
     """
     try:
-        return outcome.write(path, name)
+        outcome.write(path, name)
     except ParameterError as error:
         try:
             rescue = Path(tempfile.mkdtemp(prefix="humanwalk-"))
@@ -126,9 +124,9 @@ def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> Run:
         raise ParameterError(f"{error}; the run is saved in {rescue}") from None
 
 
-def _simulate_with_progress(
+def _simulate_and_write(
     scenario: Scenario, name: str, path: Path, meshcat: Any, live: bool, checkpoint_period: float, console: Console
-) -> Outcome:
+) -> None:
     def checkpoint(so_far: Outcome) -> None:
         # A disk that is full now may have space at the end.
         with suppress(ParameterError):
@@ -147,13 +145,14 @@ def _simulate_with_progress(
         progress.update(task, completed=time)
 
     try:
-        return simulate(
+        simulate(
             scenario,
             meshcat,
             on_progress=show,
             realtime_rate=1.0 if live else 0.0,
             on_checkpoint=checkpoint,
             checkpoint_period=checkpoint_period,
+            on_end=lambda outcome: _write_or_rescue(path, outcome, name),
         )
     finally:
         if progress.live.is_started:

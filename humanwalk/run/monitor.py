@@ -22,6 +22,9 @@ FALL_HEIGHT_SHARE = 0.6
 CHECK_PERIOD = 0.01
 """Simulated time between two checks of the state [s]; a check takes time."""
 
+INTERRUPTED = "interrupted"
+"""Reason of a simulation that a signal has ended."""
+
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """Ctrl-C, the request of a system or a scheduler to end, and a terminal that was closed."""
 
@@ -53,7 +56,7 @@ class Monitor:
             return EventStatus.DidNothing()
         # An exact multiple of the period: a check beside the systems' own times would add a step.
         self._next_check = CHECK_PERIOD * (math.floor(time / CHECK_PERIOD + 1e-6) + 1)
-        self.reason = self._failure(root_context) or ("interrupted" if self.interrupted else "")
+        self.reason = self._failure(root_context) or (INTERRUPTED if self.interrupted else "")
         if self.reason:
             return EventStatus.ReachedTermination(self.watched, self.reason)
         self.on_progress(time)
@@ -86,48 +89,31 @@ class Monitor:
 
     @contextmanager
     def stop_on_signal(self) -> Iterator[None]:
-        """Within the block, the first of STOP_SIGNALS ends the simulation at the next check."""
+        """Within the block, STOP_SIGNALS end the simulation at the next check; a second Ctrl-C acts as before.
 
-        def stop(number: int) -> None:
+        A signal that arrives too late to end the simulation acts at the end of the block, so that a run that is
+        written in the block is not lost. A signal that the process ignores, as SIGHUP under nohup, stays ignored.
+        Outside of the main thread, which alone may handle signals, nothing changes.
+        """
+        before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+        before = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+        if threading.current_thread() is not threading.main_thread():
+            before = {}
+        received: list[int] = []
+
+        def stop(number: int, frame: object) -> None:
+            if number == signal.SIGINT and number in received:
+                signal.signal(number, before[signal.SIGINT])
+                os.kill(os.getpid(), number)
+            received.append(number)
             self.interrupted = True
 
-        with first_signal(stop):
+        for number in before:
+            signal.signal(number, stop)
+        try:
             yield
-
-
-@contextmanager
-def held_signals() -> Iterator[None]:
-    """Within the block, the first of STOP_SIGNALS waits for the end of the block."""
-    received: list[int] = []
-    with first_signal(received.append):
-        yield
-    for number in received:
-        os.kill(os.getpid(), number)
-
-
-@contextmanager
-def first_signal(handle: Callable[[int], None]) -> Iterator[None]:
-    """Within the block, the first of STOP_SIGNALS calls `handle` with its number; a second one acts as before.
-
-    A signal that the process ignores, as SIGHUP under nohup, stays ignored. Outside of the main thread, which alone
-    may handle signals, nothing changes.
-    """
-    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
-    before = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
-    if threading.current_thread() is not threading.main_thread():
-        before = {}
-
-    def restore() -> None:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-    def handle_once(number: int, frame: object) -> None:
-        restore()
-        handle(number)
-
-    for number in before:
-        signal.signal(number, handle_once)
-    try:
-        yield
-    finally:
-        restore()
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+        if received and self.reason != INTERRUPTED:
+            os.kill(os.getpid(), received[0])

@@ -98,6 +98,7 @@ def simulate(
     realtime_rate: float = 0.0,
     on_checkpoint: Callable[[Outcome], None] | None = None,
     checkpoint_period: float = 60.0,
+    on_end: Callable[[Outcome], object] | None = None,
 ) -> Outcome:
     """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
 
@@ -107,6 +108,7 @@ def simulate(
         on_progress: called with the simulated time [s] every 10 ms of it.
         realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
         on_checkpoint: called with the outcome so far every `checkpoint_period` seconds of wall-clock time.
+        on_end: called with the outcome while signals such as SIGTERM still wait, to save it.
 
     Raises:
         ParameterError: the scenario cannot be simulated, or failed before there was anything to record.
@@ -141,6 +143,11 @@ def simulate(
             end = monitor.reason or f"solver failed: {printable((str(error) or repr(error)).splitlines()[0])}"
         wall_time = time.perf_counter() - started
         signals = before_runaway(recorder.table(simulator.get_context()))
-    if signals.num_rows == 0:
-        raise ParameterError(f"simulation: nothing to record, it ended at its start: {end}; change start or actuators")
-    return Outcome(scenario, signals, end, wall_time)
+        if signals.num_rows == 0:
+            raise ParameterError(
+                f"simulation: nothing to record, it ended at its start: {end}; change start or actuators"
+            )
+        outcome = Outcome(scenario, signals, end, wall_time)
+        if on_end is not None:
+            on_end(outcome)
+    return outcome

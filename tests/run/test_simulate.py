@@ -19,6 +19,7 @@ from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
+from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import prepare, simulate
 from humanwalk.scenario import load_scenario
 from humanwalk.sides import Side
@@ -291,3 +292,21 @@ def test_a_simulation_starts_with_the_velocities_of_the_scenario() -> None:
 def test_the_same_scenario_gives_the_same_record() -> None:
     first, again = (simulate(thesis(0.1, start__joint_noise="0.01")) for _ in range(2))
     assert first.signals.equals(again.signals)
+
+
+def test_signal_that_arrives_while_the_run_is_saved_waits() -> None:
+    received, saved = [], []
+    before = signal.signal(signal.SIGTERM, lambda number, frame: received.append(number))
+
+    def save(outcome: Outcome) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        assert received == []
+        saved.append(outcome)
+
+    try:
+        outcome = simulate(load_scenario("thesis", {"duration": "0.02"}), on_end=save)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert saved == [outcome]
+    assert outcome.end == "completed"
+    assert received == [signal.SIGTERM]
