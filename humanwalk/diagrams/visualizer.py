@@ -14,6 +14,7 @@ def add_visualizer(
     frame_rate: float,
     terrain: Terrain,
     foot_forces: OutputPort | None = None,
+    new_recording: bool = True,
 ) -> None:
     """Show a scene in Meshcat, following its walker, and start recording.
 
@@ -24,13 +25,14 @@ def add_visualizer(
         frame_rate: Frames per simulated second.
         terrain: The ground.
         foot_forces: See `FootForceObserver`; drawn as arrows.
+        new_recording: Whether a recording starts; otherwise the present one continues.
     """
-    MeshcatVisualizer.AddToBuilder(
-        builder, query_object, meshcat, MeshcatVisualizerParams(publish_period=1.0 / frame_rate)
-    )
+    parameters = MeshcatVisualizerParams(publish_period=1.0 / frame_rate, delete_on_initialization_event=False)
+    MeshcatVisualizer.AddToBuilder(builder, query_object, meshcat, parameters)
     view = builder.AddNamedSystem("following_view", FollowingView(meshcat, frame_rate, terrain))
     builder.Connect(query_object, view.GetInputPort("query_object"))
     if foot_forces is not None:
         builder.Connect(foot_forces, view.GetInputPort("foot_forces"))
     # A recording at another rate than the visualizer's would stutter.
-    meshcat.StartRecording(frames_per_second=frame_rate)
+    if new_recording:
+        meshcat.StartRecording(frames_per_second=frame_rate)

@@ -15,6 +15,7 @@ from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import ParameterError, printable
+from humanwalk.run.fall_picture import show_fall
 from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
@@ -104,7 +105,7 @@ def simulate(
 
     Args:
         scenario: what to simulate.
-        meshcat: shows and records the motion; the caller publishes the recording.
+        meshcat: shows and records the motion, after a fall until the body lies; the caller publishes the recording.
         on_progress: called with the simulated time [s] every 10 ms of it.
         realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
         on_checkpoint: called with the outcome so far every `checkpoint_period` seconds of wall-clock time.
@@ -150,4 +151,8 @@ def simulate(
         outcome = Outcome(scenario, signals, end, wall_time)
         if on_end is not None:
             on_end(outcome)
+        if end == "fell" and meshcat is not None and prepared.plant is not None:
+            context = simulator.get_context()
+            state = prepared.plant.GetPositionsAndVelocities(prepared.plant.GetMyContextFromRoot(context))
+            show_fall(scenario, meshcat, context.get_time(), state, realtime_rate)
     return outcome

@@ -21,12 +21,17 @@ ARROW_COLOR = Rgba(0.85, 0.25, 0.10, 1.0)
 MIN_ARROW_LENGTH = 1e-3
 """Length of the arrow of no force [m]: a scale of zero has no inverse."""
 
+LATERAL_SLACK = 0.1
+"""Distance from the line of a straight walk over which the view stays [m]: sway is seen as such."""
+NO_FORCES = np.zeros(16)
+
 
 class FollowingView(LeafSystem):
-    """Keeps the pelvis above Meshcat's origin, and draws the force on each foot at its center of pressure.
+    """Keeps the pelvis near Meshcat's origin, and draws the force on each foot at its center of pressure.
 
     The scene moves rather than the camera: the light stays on the walker, the viewer can turn and zoom freely, and a
-    recording contains the motion. It moves along x, and vertically with the ground below the pelvis.
+    recording contains the motion. It moves along x, along y beyond LATERAL_SLACK, and vertically with the ground below
+    the pelvis.
 
     Inputs:
         query_object: SceneGraph's.
@@ -49,10 +54,10 @@ class FollowingView(LeafSystem):
         time = context.get_time()
         p_WP = _pelvis_position(self._query_object.Eval(context))
         ground = float(self._terrain.height(p_WP[:2]))
-        self._meshcat.SetTransform(SCENE, RigidTransform(np.array([-p_WP[0], 0.0, -ground])), time)
-        if not self._foot_forces.HasValue(context):
-            return
-        for side, foot in zip(SIDES, self._foot_forces.Eval(context).reshape(2, 8), strict=True):
+        lateral = p_WP[1] - np.clip(p_WP[1], -LATERAL_SLACK, LATERAL_SLACK)
+        self._meshcat.SetTransform(SCENE, RigidTransform(-np.array([p_WP[0], lateral, ground])), time)
+        forces = self._foot_forces.Eval(context) if self._foot_forces.HasValue(context) else NO_FORCES
+        for side, foot in zip(SIDES, forces.reshape(2, 8), strict=True):
             f_W, p_WCop, loaded = foot[0:3], foot[3:6], bool(foot[7])
             if loaded:
                 self._X_WA[side] = RigidTransform(RotationMatrix.MakeFromOneVector(f_W, 2), p_WCop)

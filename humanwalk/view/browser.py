@@ -177,7 +177,7 @@ def open_stage(page: Path, width: int, height: int, max_duration: float) -> Iter
     Args:
         page: The HTML file.
         width, height: Size of the picture in pixels.
-        max_duration: Duration of the run [s]; a longer recording is refused.
+        max_duration: Duration of the run's replay [s]; a longer recording is refused.
 
     Raises:
         ParameterError: No Playwright, browser or WebGL, with what to install; or a page that cannot be shown.
@@ -278,7 +278,7 @@ def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max
     if not 0.0 < duration <= max_duration + DURATION_TOLERANCE:
         raise ParameterError(
             f"{name}: a recording of {duration:g} s{''.join(f'; {printable(text)}' for text in complaints[:3])}; "
-            f"allowed: up to {max_duration:g} s, which the run lasted; walk again"
+            f"allowed: up to {max_duration:g} s, by the run's summary; walk again"
         )
     _evaluate(tab, HOLD, None, STILL_TIMEOUT_S)
     return Stage(duration, complaints, tab)

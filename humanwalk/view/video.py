@@ -16,6 +16,7 @@ from typing import Literal, get_args
 from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
+from humanwalk.run.fall_picture import replay_duration
 from humanwalk.run.folder import Run
 from humanwalk.view.browser import Camera, open_stage
 from humanwalk.view.replay import CAMERA_POSITION, CAMERA_TARGET
@@ -168,7 +169,7 @@ def record_video(
         KeyboardInterrupt: Ctrl-C; nothing is written.
     """
     opened = Run.open(run)
-    page, duration = opened.replay, opened.summary["duration_s"]
+    page, duration = opened.replay, replay_duration(opened.summary)
     form = output.suffix.lower()
     if form not in FORMATS:
         raise ParameterError(f"-o {output}: unknown video format; allowed: {', '.join(FORMATS)}; name it walk.mp4")
@@ -217,7 +218,7 @@ def write_snapshot(
     except ImportError:
         raise missing_package("pillow", "video") from None
     opened = Run.open(run)
-    page, duration = opened.replay, opened.summary["duration_s"]
+    page, duration = opened.replay, replay_duration(opened.summary)
     if output.suffix.lower() != ".png":
         raise ParameterError(f"-o {output}: unknown picture format; allowed: .png; name it strip.png")
     check_picture(width, height, view)

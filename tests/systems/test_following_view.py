@@ -15,7 +15,7 @@ from humanwalk.body.limbs import PELVIS
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
-from humanwalk.systems.following_view import ARROW_LENGTH_PER_FORCE, SCENE, FollowingView
+from humanwalk.systems.following_view import ARROW_LENGTH_PER_FORCE, LATERAL_SLACK, SCENE, FollowingView
 from humanwalk.terrain import Plane
 from humanwalk.view.replay import make_meshcat
 
@@ -62,9 +62,9 @@ def test_ports(meshcat: Meshcat) -> None:
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.2])
-def test_scene_moves_back_along_x_and_down_with_the_ground(meshcat: Meshcat, slope: float) -> None:
+def test_scene_moves_against_the_walker_and_down_with_the_ground(meshcat: Meshcat, slope: float) -> None:
     show(meshcat, Plane(slope=slope))
-    expected = [-P_WP[0], 0.0, -P_WP[0] * np.tan(slope)]
+    expected = [-P_WP[0], LATERAL_SLACK - P_WP[1], -P_WP[0] * np.tan(slope)]
     np.testing.assert_allclose(transform(meshcat, SCENE).translation(), expected, atol=1e-12)
 
 
