@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from humanwalk.run.outcome import Outcome
     from humanwalk.run.simulate import simulate
     from humanwalk.scenario import Scenario, load_scenario
+    from humanwalk.study.cluster import local_client
+    from humanwalk.study.execute import run_study
+    from humanwalk.study.study import Study, load_study
+    from humanwalk.study.table import read_table
     from humanwalk.view.plots import plot
 
 __version__ = version("humanwalk")
@@ -34,10 +38,15 @@ _HOMES = {
     "ParameterError": "humanwalk.quantity",
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
+    "Study": "humanwalk.study.study",
     "load_scenario": "humanwalk.scenario",
+    "load_study": "humanwalk.study.study",
+    "local_client": "humanwalk.study.cluster",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
     "plot": "humanwalk.view.plots",
+    "read_table": "humanwalk.study.table",
+    "run_study": "humanwalk.study.execute",
     "simulate": "humanwalk.run.simulate",
 }
 
@@ -46,11 +55,16 @@ __all__ = [
     "ParameterError",
     "Run",
     "Scenario",
+    "Study",
     "__version__",
     "load_scenario",
+    "load_study",
+    "local_client",
     "make_playback",
     "make_walker",
     "plot",
+    "read_table",
+    "run_study",
     "simulate",
 ]
 

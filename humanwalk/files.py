@@ -1,6 +1,7 @@
 """Files of others, read within bounds, and files of ours, written whole or not at all."""
 
 import errno
+import fcntl
 import os
 import stat
 import tempfile
@@ -116,6 +117,26 @@ def make_folder(path: Path) -> list[Path]:
         with tempfile.NamedTemporaryFile(dir=path, prefix="." + "x" * TEMPORARY_NAME):
             pass
     return made
+
+
+@contextmanager
+def locked(folder: Path, refusal: str) -> Iterator[None]:
+    """Within the block, no other process has the lock of the folder; the lock ends with the process.
+
+    Raises:
+        ParameterError: another process has it; the message is `refusal`.
+    """
+    with file_errors(folder, WRITABLE):
+        handle = os.open(folder, os.O_RDONLY)
+    try:
+        with file_errors(folder, WRITABLE):
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise ParameterError(refusal) from None
+        yield
+    finally:
+        os.close(handle)
 
 
 def _open_without_waiting(path: str, flags: int) -> int:

@@ -3,155 +3,92 @@
 pydrake's typed loader assigns to fields, so it cannot make frozen dataclasses, and its messages span lines.
 """
 
+import copy
 import dataclasses
-import re
-import reprlib
+import functools
+import math
 import typing
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
-import yaml
-
 from humanwalk.files import read_text
-from humanwalk.quantity import ParameterError, check, did_you_mean, printable, tag_of
+from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, tag_of
+from humanwalk.yaml_text import read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
 
-MAX_NODES = 20_000
-"""Number of values in a file, with aliases and merge keys written out; a complete scenario has three hundred."""
-
 MAX_ENTRIES = 1000
 """Length of the longest list."""
 
-_BRIEF = reprlib.Repr(maxlevel=3, maxlist=4, maxdict=4, maxset=4, maxstring=60, maxlong=60, maxother=60)
-
-
-class _Loader(yaml.SafeLoader):
-    """YAML with the plain scalars of version 1.2: 1e-3 is a number, 1:30 and `no` are text."""
-
-
-class _Dumper(yaml.SafeDumper):
-    """Quotes what `_Loader` would not read as text; writes every value out."""
-
-    def ignore_aliases(self, data: Any) -> bool:
-        return True
-
-
-_Loader.yaml_implicit_resolvers = _Dumper.yaml_implicit_resolvers = {}
-for _tag, _pattern, _first in (
-    ("bool", r"true|false|True|False", "tfTF"),
-    ("null", r"~|null|Null|", "~nN"),
-    ("int", r"[-+]?[0-9]+", "-+0123456789"),
-    ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf)|\.(nan|NaN)", "-+.0123456789"),
-    ("merge", "<<", "<"),
-):
-    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(rf"^(?:{_pattern})$"), [*_first, ""])
-
-
-def _construct_number(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int | float:
-    # YAML writes .inf and .nan where Python writes inf and nan.
-    number = re.sub(r"\.(?=[a-zA-Z])", "", node.value)
-    return int(number) if re.fullmatch(r"[-+]?[0-9]+", number) else float(number)
-
-
-for _tag in ("int", "float"):
-    _Loader.add_constructor(f"tag:yaml.org,2002:{_tag}", _construct_number)
-
-
-def read_yaml(text: str, name: str) -> dict[str, Any]:
-    """The mapping that YAML text holds; `name` is the file's, for errors.
-
-    Keys at the root that begin with an underscore hold anchors, as everywhere in Drake, and are left out.
-
-    Raises:
-        ParameterError: not YAML, not a mapping, a key twice, or too many values.
-    """
-    try:
-        root = yaml.compose(text, Loader=_Loader)
-        _require_sound(root, name)
-        data = yaml.load(text, Loader=_Loader)
-    except ParameterError:
-        raise
-    except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RecursionError) as e:
-        # PyYAML's constructors let these out of scalars that do not fit their tag, like !!int "".
-        mark = getattr(e, "problem_mark", None)
-        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        problem = getattr(e, "problem", None) or "cannot be read"
-        raise ParameterError(f"{name}: not YAML{where}: {shown(problem)}; correct that line") from None
-    if data is None:
-        return {}
-    if not isinstance(data, dict):
-        raise ParameterError(f"{name}: {shown(data)} is not a mapping of fields; write fields, like `duration: 15`")
-    return {key: value for key, value in data.items() if not str(key).startswith("_")}
-
-
-def _require_sound(root: yaml.Node | None, name: str) -> None:
-    """Raise ParameterError where a mapping has a key twice, or a file stands for too many values."""
-    sizes: dict[int, int] = {}
-
-    def size(node: yaml.Node, inside: frozenset[int]) -> int:
-        if not isinstance(node, yaml.CollectionNode):
-            return 1
-        if id(node) in inside:
-            raise ParameterError(f"{name}: a value contains itself; write it out")
-        if id(node) not in sizes:
-            if isinstance(node, yaml.MappingNode):
-                _require_keys_once(node, name)
-                children = [child for pair in node.value for child in pair]
-            else:
-                children = node.value
-            sizes[id(node)] = 1 + sum(size(child, inside | {id(node)}) for child in children)
-        return sizes[id(node)]
-
-    if root is not None and size(root, frozenset()) > MAX_NODES:
-        raise ParameterError(f"{name}: stands for too many values; allowed: up to {MAX_NODES}; write fewer aliases")
-
-
-def _require_keys_once(mapping: yaml.MappingNode, name: str) -> None:
-    """Raise ParameterError where a key comes twice: YAML readers silently keep the last."""
-    lines: dict[str, int] = {}
-    for key, _ in mapping.value:
-        if not isinstance(key, yaml.ScalarNode):
-            continue
-        line = key.start_mark.line + 1
-        if key.value in lines:
-            raise ParameterError(
-                f"{name}: {shown(key.value)} comes twice, at lines {lines[key.value]} and {line}; allowed: every field "
-                "once in its group; remove one"
-            )
-        lines[key.value] = line
-
 
 def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> None:
+    """Replace a value in the mapping of a dataclass of parameters by text; see `replace_value`.
+
+    Raises:
+        ParameterError: the text is not YAML, or the field cannot be replaced.
+    """
+    replace_value(kind, data, field, read_yaml(f"value: {text}", f"--set {field}")["value"])
+
+
+def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> None:
     """Replace a value in the mapping of a dataclass of parameters by its dotted field name.
 
     Args:
         kind: the dataclass.
         data: the mapping, changed in place; a choice may stand in it as its tag.
-        field: `controller.balanced.planner.dcm_gain`.
-        text: the value as in YAML.
+        field: `controller.balanced.planner.dcm_gain`, or with the index of a list's entry `pushes.given.0.direction`;
+            the index after the last adds an entry.
+        value: as YAML has it; it is copied.
 
     Raises:
-        ParameterError: the text is not YAML, or the name leads into a value or into another choice.
+        ParameterError: the name leads into a value, into another choice, or beyond a list.
     """
-    value = read_yaml(f"value: {text}", f"--set {field}")["value"]
-    choices = {name for name, found in fields_of(kind) if "choices" in found.metadata}
-    *parents, leaf = field.split(".")
-    for depth, parent in enumerate(parents, 1):
-        group, name, below = data.get(parent), ".".join(parents[:depth]), [*parents, leaf][depth]
-        if group is None or (name in choices and group == below):
-            group = data[parent] = {}
-        tag = next(iter(group), below) if isinstance(group, dict) else group
-        if not isinstance(group, dict) or (name in choices and tag != below):
-            raise ParameterError(
-                f"{field}: {name} is {shown(tag)}; allowed: fields of {shown(tag)}; choose another with "
-                f"--set {name}=... before"
-            )
-        data = group
-    data[leaf] = value
+    fields, parts = _named_fields(kind), field.split(".")
+    group: dict[str, Any] | list[Any] = data
+    for depth, (part, below) in enumerate(pairwise(parts), 1):
+        name = ".".join(parts[:depth])
+        group = _group_in(group, part, below, name, fields.get(name))
+    if isinstance(group, list):
+        group[_index(group, parts[-1], field)] = copy.deepcopy(value)
+    else:
+        group[parts[-1]] = copy.deepcopy(value)
+
+
+def _group_in(group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None) -> Any:
+    """The mapping or list at `part` of a group, made where there is none; `below` is the part of the name after it."""
+    key: Any = _index(group, part, name) if isinstance(group, list) else part
+    found = group[key] if isinstance(group, list) else group.get(key)
+    chosen = field is not None and "choices" in field.metadata
+    if found is None or (chosen and found == below):
+        found = group[key] = _default_list(field) if below.isdecimal() else {}
+    if isinstance(found, list) or (isinstance(found, dict) and not (chosen and next(iter(found), below) != below)):
+        return found
+    tag = next(iter(found)) if isinstance(found, dict) else found
+    raise ParameterError(
+        f"{name}.{below}: {name} is {shown(tag)}; allowed: fields of {shown(tag)}; choose another with "
+        f"--set {name}=... before"
+    )
+
+
+def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
+    """The entries that a list has where a file does not name it."""
+    plain = [] if field is None or field.default is dataclasses.MISSING else _plain(field.default)
+    return plain if isinstance(plain, list) else []
+
+
+def _index(entries: list[Any], part: str, name: str) -> int:
+    """Index of an entry that a part of a dotted name stands for; the one after the last is made."""
+    if not (part.isascii() and part.isdecimal() and len(part) < 6 and int(part) <= len(entries)):
+        raise ParameterError(
+            f"{printable(name)}: no such entry; allowed: 0 to {len(entries)}; {len(entries)} adds an entry"
+        )
+    if int(part) == len(entries):
+        entries.append(None)
+    return int(part)
 
 
 def load_as[T](kind: type[T], path: Path) -> T:
@@ -181,22 +118,36 @@ def build[T](kind: type[T], data: Mapping[str, Any]) -> T:
 
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
-    text: str = yaml.dump(_plain(parameters), Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120)
-    return text
+    return yaml_text(_plain(parameters))
+
+
+def plain(parameters: Any) -> dict[str, Any]:
+    """A dataclass of parameters as a mapping, every field written out; `build` makes an equal one of it."""
+    entries: dict[str, Any] = _plain(parameters)
+    return entries
 
 
 def _plain(value: Any) -> Any:
     if dataclasses.is_dataclass(value):
         entries = {}
         for field in dataclasses.fields(value):
-            entry = _plain(getattr(value, field.name))
+            entry = getattr(value, field.name)
             if "choices" in field.metadata:
-                entry = {tag_of(field.metadata["choices"], getattr(value, field.name)): entry}
-            entries[field.name] = entry
+                entries[field.name] = _tagged(field.metadata["choices"], entry)
+            elif "choices_by_name" in field.metadata:
+                choices = field.metadata["choices_by_name"]
+                entries[field.name] = {name: _tagged(choices, chosen) for name, chosen in entry.items()}
+            else:
+                entries[field.name] = _plain(entry)
         return entries
     if isinstance(value, Mapping):
         return {key: _plain(entry) for key, entry in value.items()}
-    return [_plain(entry) for entry in value] if isinstance(value, tuple) else value
+    return [_plain(entry) for entry in value] if isinstance(value, tuple | list) else value
+
+
+def _tagged(choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
+    entry, only = _plain(value), only_field(type(value))
+    return {tag_of(choices, value): entry[only] if only else entry}
 
 
 @dataclass(frozen=True)
@@ -213,9 +164,22 @@ class _Place:
         return self.path
 
 
+@functools.cache
+def _hints(kind: type[Any]) -> dict[str, Any]:
+    """Types of the fields of a dataclass; a study builds a hundred thousand scenarios."""
+    return typing.get_type_hints(kind)
+
+
+@functools.cache
+def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
+    return dict(fields_of(kind))
+
+
 def _build(kind: Any, value: Any, place: _Place) -> Any:
     """`value` out of a YAML file as an instance of the annotated type `kind`."""
     origin = typing.get_origin(kind)
+    if kind is Any:
+        return _build_any(value, place)
     if dataclasses.is_dataclass(kind):
         return _build_dataclass(kind, value, place)
     if origin is Literal:
@@ -246,8 +210,8 @@ def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
     fields = {field.name: field for field in dataclasses.fields(kind)}
     if not isinstance(value, dict):
         raise ParameterError(f"{place}: {shown(value)} is not a group of fields; allowed: {', '.join(fields)}")
-    hints = typing.get_type_hints(kind)
-    arguments = {}
+    hints = _hints(kind)
+    arguments: dict[str, Any] = {}
     for key, entry in value.items():
         name = key if isinstance(key, str) and key.isprintable() else shown(key)
         if key not in fields:
@@ -257,6 +221,12 @@ def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
         metadata = fields[key].metadata
         if "choices" in metadata:
             arguments[key] = _build_choice(metadata["choices"], entry, place / name)
+        elif "choices_by_name" in metadata:
+            entries = _build(Mapping[str, Any], entry, place / name)
+            arguments[key] = {
+                which: _build_choice(metadata["choices_by_name"], value, place / name / which)
+                for which, value in entries.items()
+            }
         else:
             arguments[key] = _build(hints[key], entry, place / name)
     try:
@@ -276,7 +246,14 @@ def _build_choice(choices: Mapping[str, type[Any]], value: Any, place: _Place) -
             f"{place}: {shown(tag)} is unknown; allowed: {', '.join(choices)}, alone or with fields"
             f"{did_you_mean(shown(tag), tuple(choices))}"
         )
-    return _build(choices[tag], {} if entry is None else entry, place / tag)
+    chosen: Any = choices[tag]
+    only = only_field(chosen)
+    if only is None:
+        return _build(chosen, {} if entry is None else entry, place / tag)
+    try:
+        return chosen(_build(_hints(chosen)[only], entry, place / tag))
+    except ParameterError as error:
+        raise ParameterError(str(error) if str(error).startswith(str(place)) else f"{place / tag}: {error}") from None
 
 
 def _hint(name: str, fields: Mapping[str, Any], place: _Place) -> str:
@@ -289,7 +266,7 @@ def _hint(name: str, fields: Mapping[str, Any], place: _Place) -> str:
 
 def fields_of(kind: Any, path: str = "") -> Iterator[tuple[str, dataclasses.Field[Any]]]:
     """Dotted names and fields of a dataclass of parameters, with those of its groups and of every choice."""
-    hints = typing.get_type_hints(kind)
+    hints = _hints(kind)
     for field in dataclasses.fields(kind):
         name = f"{path}.{field.name}" if path else field.name
         yield name, field
@@ -310,6 +287,24 @@ def anchor_paths(kind: type[Any], data: dict[str, Any], folder: Path) -> None:
             group[leaf] = str(folder / group[leaf])
 
 
+def _build_any(value: Any, place: _Place) -> Any:
+    """A value that another dataclass will check: finite numbers, printable text, lists and mappings of them."""
+    if isinstance(value, dict):
+        return _build(Mapping[str, Any], value, place)
+    if isinstance(value, list | tuple):
+        return list(_build(tuple[Any, ...], value, place))
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int) and value.bit_length() < 64:
+        return value
+    if (isinstance(value, float) and math.isfinite(value)) or (isinstance(value, str) and value.isprintable()):
+        return value
+    raise ParameterError(
+        f"{place}: {shown(value)} cannot be a value; allowed: finite numbers, text on one line, true, false, lists and "
+        "groups of them; write one of these"
+    )
+
+
 def _build_scalar(kind: Any, value: Any, place: _Place) -> Any:
     wanted = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}[kind]
     if isinstance(value, int) and value.bit_length() > 64:
@@ -319,12 +314,3 @@ def _build_scalar(kind: Any, value: Any, place: _Place) -> Any:
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         raise ParameterError(f"{place}: {shown(value)} is not {wanted}; write {wanted}")
     return value
-
-
-def shown(value: Any) -> str:
-    """A value for an error message: short, on one line."""
-    try:
-        # Aliases of aliases may stand for more than memory holds: no more is looked at than is shown.
-        return printable(_BRIEF.repr(value), 40)
-    except ValueError:
-        return "a number of too many digits"  # Python refuses to write it

@@ -64,6 +64,21 @@ def choice(choices: Mapping[str, type[Any]], default: Any) -> Any:
     return dataclasses.field(default=default, metadata={"choices": choices})
 
 
+def choices_by_name(choices: Mapping[str, type[Any]]) -> Any:
+    """Dataclass field that holds a mapping of names to choices, each as in `choice`; empty by default."""
+    return dataclasses.field(default_factory=dict, metadata={"choices_by_name": choices})
+
+
+def only() -> Any:
+    """The only field of a choice, which a file writes without the field's name: `values: [1, 2]`."""
+    return dataclasses.field(metadata={"only": True})
+
+
+def only_field(kind: type[Any]) -> str | None:
+    """Name of the field of a dataclass that was made by `only`; None without one."""
+    return next((field.name for field in dataclasses.fields(kind) if "only" in field.metadata), None)
+
+
 def file_path() -> Any:
     """Dataclass field for the path of a file; a relative one in a parameter file counts from that file's folder."""
     return dataclasses.field(default="", metadata={"path": True})

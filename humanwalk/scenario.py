@@ -30,10 +30,11 @@ from humanwalk.choices import (
 )
 from humanwalk.choices.start import StartParameters
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, override, read_yaml
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, override
 from humanwalk.quantity import ParameterError, choice, did_you_mean, quantity
 from humanwalk.terrain import TERRAINS, Plane, Terrain
 from humanwalk.walking.push import PushParameters
+from humanwalk.yaml_text import read_yaml
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     if not os.path.exists(path):
         raise ParameterError(
             f"scenario: {name_or_path}: no such scenario or file; allowed: {', '.join(shipped)}, or the path of a YAML "
-            f"file{did_you_mean(str(name_or_path), tuple(shipped))}"
+            f"file{did_you_mean(Path(name_or_path).name, tuple(shipped))}"
         )
     text = read_text(path, MAX_FILE_SIZE)
     return parse_scenario(text, overrides, name=path.name, folder=path.parent)

@@ -65,6 +65,7 @@ INTERRUPTED = 130
 
 SIMULATE = "Simulate"
 SHOW = "Show and analyze a run"
+STUDY = "Studies: many runs"
 INSPECT = "Models, diagrams and cost"
 
 ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
@@ -100,8 +101,8 @@ def require_look(look: str) -> None:
         raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
 
 
-def counted_progress(unit: str) -> Progress:
-    """A progress bar that counts, with elapsed and estimated remaining time."""
+def counted_progress(unit: str, estimate_period: float = 30.0) -> Progress:
+    """A progress bar that counts, with elapsed time, and remaining time by the speed of the last `estimate_period`."""
     columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), f"{unit},")
     times = (TimeElapsedColumn(), "elapsed,", TimeRemainingColumn(), "remaining")
-    return Progress(*columns, *times, console=console, transient=True)
+    return Progress(*columns, *times, console=console, transient=True, speed_estimate_period=estimate_period)

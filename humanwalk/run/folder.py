@@ -1,8 +1,6 @@
 """A run on disk: one folder with the scenario, the signals, the summary, the replay and the plots."""
 
-import fcntl
 import json
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,7 +12,16 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from humanwalk.files import WRITABLE, file_errors, make_folder, read_regular, require_inside, write_text, write_whole
+from humanwalk.files import (
+    WRITABLE,
+    file_errors,
+    locked,
+    make_folder,
+    read_regular,
+    require_inside,
+    write_text,
+    write_whole,
+)
 from humanwalk.measures.signals import TIME, column_of, unit_of
 from humanwalk.measures.summary import Summary
 from humanwalk.numerics import Array
@@ -179,25 +186,12 @@ def claimed(folder: Path) -> Iterator[None]:
     Raises:
         ParameterError: another run has claimed it, or has written into it meanwhile.
     """
-    with file_errors(folder, WRITABLE):
-        handle = os.open(folder, os.O_RDONLY)
-    try:
-        if not _lock_empty(folder, handle):
-            raise ParameterError(
-                f"-o {printable(folder)}: another run writes into it; allowed: a folder for every run; choose another"
-            )
+    refusal = f"-o {printable(folder)}: another run writes into it; allowed: a folder for every run; choose another"
+    with locked(folder, refusal):
+        with file_errors(folder, WRITABLE):
+            if any(folder.iterdir()):
+                raise ParameterError(refusal)
         yield
-    finally:
-        os.close(handle)
-
-
-def _lock_empty(folder: Path, handle: int) -> bool:
-    with file_errors(folder, WRITABLE):
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return not any(folder.iterdir())
 
 
 def require_room(folder: Path, scenario: Scenario) -> None:

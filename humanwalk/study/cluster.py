@@ -1,0 +1,111 @@
+"""Dask clusters for studies: processes of this machine, a running scheduler, or SLURM jobs."""
+
+import logging
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from humanwalk.extras import missing_package
+from humanwalk.quantity import ParameterError, printable
+
+try:
+    import dask
+    from distributed import Client, LocalCluster
+except ImportError:
+    raise missing_package("dask", "study") from None
+
+KILLS_ALLOWED = 3
+"""A run that kills its worker so many times is not repeated."""
+
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Environment of workers: the processes share the cores."""
+
+SETTINGS: dict[str, Any] = {
+    # One task per worker: the death of a worker counts against the run that it was at, and no other.
+    "distributed.scheduler.worker-saturation": 1.0,
+    "distributed.scheduler.allowed-failures": KILLS_ALLOWED - 1,
+    "distributed.scheduler.work-stealing": False,
+    # No pages are served; the ports remain, on the loopback interface.
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+    "distributed.worker.profile.enabled": False,
+    # A worker near its limit would take no further run but stay.
+    "distributed.worker.memory.target": False,
+    "distributed.worker.memory.spill": False,
+    "distributed.worker.memory.pause": False,
+    "distributed.nanny.pre-spawn-environ": ONE_THREAD | {"MALLOC_TRIM_THRESHOLD_": "65536"},
+    "distributed.admin.log-length": 100,
+}
+"""Dask's settings for studies."""
+
+
+def usable_cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def local_client(workers: int | None = None, memory_limit: str | int = "auto") -> Iterator[Client]:
+    """Client of worker processes on this machine, each with one thread; they end with the block, or with this process.
+
+    Args:
+        workers: their number; None for one per core.
+        memory_limit: of each worker [bytes]; a worker above 95 % of it is killed. Default: its share of the machine's.
+    """
+    with dask.config.set(SETTINGS), _interrupts_ignored():
+        cluster = LocalCluster(
+            n_workers=workers or usable_cores(),
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            dashboard_address=None,
+            # Without an address it would be the fixed port 8787.
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+            memory_limit=memory_limit,
+            silence_logs=logging.CRITICAL,
+        )
+    with cluster, Client(cluster, set_as_default=False) as client:
+        yield client
+
+
+@contextmanager
+def remote_client(address: str) -> Iterator[Client]:
+    """Client of a running Dask scheduler.
+
+    Args:
+        address: "tcp://127.0.0.1:8786".
+
+    Raises:
+        ParameterError: there is none.
+    """
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise ParameterError(
+            f"--scheduler {printable(address)}: {printable(error)}; allowed: the address of a running Dask scheduler, "
+            "like tcp://127.0.0.1:8786; start one with: dask scheduler --host 127.0.0.1"
+        ) from None
+    with client:
+        yield client
+
+
+CONNECT_TIMEOUT = 10.0
+"""Time for a scheduler to answer [s]."""
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Within the block, processes are started that Ctrl-C of the terminal does not reach: the command ends them."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:
+        # Not the main thread, which alone may handle signals.
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,190 @@
+"""Designs of experiments: which combinations of the factors' values a study simulates.
+
+Points are pure functions of design and factors: the same study has the same points in the same order everywhere.
+"""
+
+import csv
+import io
+import json
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from scipy.stats import qmc
+
+from humanwalk.files import read_text
+from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError, file_path, printable, quantity
+from humanwalk.study.factors import Factor, Variants
+
+Point = Mapping[str, Any]
+"""Values by the names of the factors; a factor without a value keeps what the scenario has."""
+
+MAX_POINTS = 200_000
+"""Points of a study; more are several studies."""
+
+MAX_VALUES = 5_000_000
+"""Points times factors."""
+
+MAX_CSV_BYTES = 50_000_000
+
+
+@dataclass(frozen=True)
+class Design(ABC):
+    """How factors are combined."""
+
+    @abstractmethod
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        """The points in order.
+
+        Raises:
+            ParameterError: too many, or a factor that does not fit the design.
+        """
+
+
+@dataclass(frozen=True)
+class FullFactorial(Design):
+    """Every combination of all levels; the last factor changes fastest."""
+
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        levels = _levels(factors)
+        _require_number(math.prod(len(each) for each in levels.values()), len(levels))
+        return [dict(zip(levels, values, strict=True)) for values in product(*levels.values())]
+
+
+@dataclass(frozen=True)
+class OneAtATime(Design):
+    """The scenario without changes, then each level of each factor alone."""
+
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        levels = _levels(factors)
+        _require_number(1 + sum(len(each) for each in levels.values()), len(levels))
+        return [{}, *({name: level} for name, each in levels.items() for level in each)]
+
+
+@dataclass(frozen=True)
+class LatinHypercube(Design):
+    """A Latin hypercube: each factor has one sample in each of `number` equal shares of its distribution."""
+
+    number: int = quantity(100, "", 1, MAX_POINTS)
+    seed: int = quantity(0, "", 0, 2**32 - 1)
+
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        _require_number(self.number, len(factors))
+        if not factors:
+            return [{}] * self.number
+        return _sampled(factors, qmc.LatinHypercube(len(factors), rng=self.seed).random(self.number))
+
+
+@dataclass(frozen=True)
+class Sobol(Design):
+    """A scrambled Sobol' sequence; its number is a power of two, which keeps it balanced."""
+
+    number: int = quantity(128, "", 1, MAX_POINTS)
+    seed: int = quantity(0, "", 0, 2**32 - 1)
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a number that is no power of two."""
+        if self.number >= 1 and self.number & (self.number - 1):
+            above = 1 << self.number.bit_length()
+            raise ParameterError(
+                f"number: {self.number} is no power of two; allowed: 1, 2, 4, ...; write {above // 2} or {above}"
+            )
+
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        _require_number(self.number, len(factors))
+        if not factors:
+            return [{}] * self.number
+        if len(factors) > qmc.Sobol.MAXDIM:
+            raise ParameterError(f"factors: {len(factors)}; allowed with design sobol: up to {qmc.Sobol.MAXDIM}")
+        return _sampled(factors, qmc.Sobol(len(factors), rng=self.seed).random(self.number))
+
+
+@dataclass(frozen=True)
+class Rows(Design):
+    """The rows of a CSV file: its columns are fields of the scenario, or factors of the kind `variants`.
+
+    A cell is a number, true, false, a list or group in JSON, or text. An empty cell keeps the scenario's value.
+    """
+
+    file: str = file_path()
+
+    def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        for name, factor in factors.items():
+            if not isinstance(factor, Variants):
+                raise ParameterError(
+                    f"factors.{name}: has values of its own; allowed with design rows: variants; remove it, or choose "
+                    "another design"
+                )
+        where = printable(self.file)
+        if not self.file:
+            raise ParameterError("design.rows.file: empty; allowed: the path of a CSV file; write it")
+        lines = csv.reader(io.StringIO(read_text(Path(self.file), MAX_CSV_BYTES)), strict=True)
+        try:
+            header, *rows = [cells for cells in lines if cells]
+        except (csv.Error, ValueError):
+            raise ParameterError(
+                f"{where}: not CSV with a header; allowed: names of fields, then rows of values; correct the file"
+            ) from None
+        if len(set(header)) < len(header) or not all(name and name.isprintable() for name in header):
+            raise ParameterError(f"{where}: the header is empty or has a name twice; allowed: every field once")
+        _require_number(len(rows), len(header))
+        for number, cells in enumerate(rows, 1):
+            if len(cells) != len(header):
+                raise ParameterError(
+                    f"{where}: row {number} has {len(cells)} values; allowed: {len(header)}, one for each column; "
+                    "correct the row"
+                )
+        return [{name: _cell(cell) for name, cell in zip(header, cells, strict=True) if cell.strip()} for cells in rows]
+
+
+DESIGNS: dict[str, type[Design]] = {
+    "full_factorial": FullFactorial,
+    "latin_hypercube": LatinHypercube,
+    "sobol": Sobol,
+    "one_at_a_time": OneAtATime,
+    "rows": Rows,
+}
+"""The designs that a study file can name."""
+
+
+def _levels(factors: Mapping[str, Factor]) -> dict[str, Sequence[Any]]:
+    found = {}
+    for name, factor in factors.items():
+        try:
+            found[name] = factor.levels()
+        except ParameterError as error:
+            raise ParameterError(f"factors.{name}: {error}") from None
+    return found
+
+
+def _sampled(factors: Mapping[str, Factor], samples: Array) -> list[Point]:
+    """Points from samples of the unit cube, shape (points, factors)."""
+    return [
+        {name: factor.quantile(float(u)) for (name, factor), u in zip(factors.items(), sample, strict=True)}
+        for sample in samples
+    ]
+
+
+def _require_number(points: int, factors: int) -> None:
+    if points * factors > MAX_VALUES:
+        raise ParameterError(
+            f"design: {points} points of {factors} factors; allowed: up to {MAX_VALUES} values; use fewer of them"
+        )
+    if not 1 <= points <= MAX_POINTS:
+        raise ParameterError(
+            f"design: {points} points; allowed: 1 to {MAX_POINTS}; use fewer levels, or another design, or several "
+            "studies"
+        )
+
+
+def _cell(text: str) -> Any:
+    """A CSV cell as a value: JSON where it is JSON, else text."""
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return text.strip()

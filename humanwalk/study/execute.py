@@ -1,0 +1,200 @@
+"""Runs of a study on Dask workers.
+
+Guarantees of `run_jobs`: each job gives one row, in the order in which they finish. A worker that dies costs only the
+runs that it was at, which are repeated; a run whose worker dies again and again becomes a row that tells so, and so
+does a run that raises an exception. No more than a few futures for each worker are alive at a time, whatever the number
+of jobs. The process that holds the client decides alone which rows are written.
+"""
+
+import time
+import uuid
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any, Protocol
+
+import pyarrow as pa
+
+from humanwalk.extras import missing_package
+from humanwalk.quantity import ParameterError, printable
+from humanwalk.study.row import Job, Row, simulate_row
+from humanwalk.study.study import Study
+from humanwalk.study.table import RUNS, Journal, open_journal, read_table
+
+try:
+    from dask.task_spec import Task
+    from distributed import Client, Future
+    from distributed.scheduler import KilledWorker
+except ImportError:
+    raise missing_package("dask", "study") from None
+
+POLL_PERIOD = 0.2
+"""Time between two looks at whether to stop [s]."""
+
+THREADS_PERIOD = 2.0
+"""Time between two counts of the workers [s]: they may join and leave at any time."""
+
+
+class Indexed(Protocol):
+    """A job: any value that can be pickled and has an index."""
+
+    @property
+    def index(self) -> int:
+        """Of the job, different for each."""
+
+
+def never() -> bool:
+    """No reason to stop."""
+    return False
+
+
+def run_jobs[J: Indexed](
+    client: Client,
+    function: Callable[[J], Row],
+    jobs: Iterable[J],
+    on_row: Callable[[J, Row], None],
+    should_stop: Callable[[], bool] = never,
+) -> None:
+    """Apply a function to jobs on the workers of a client, and hand on each row as it is finished.
+
+    Args:
+        client: of the Dask cluster.
+        function: importable on the workers; an exception that it raises becomes a row, see `failed`.
+        jobs: with different indices; they are taken one by one as there is room for them.
+        on_row: called in this thread with a job and its row.
+        should_stop: asked several times a second; true ends the work, and drops the unfinished jobs.
+
+    Raises:
+        ParameterError: the scheduler is gone. Rows that were handed on are unaffected.
+    """
+    prefix = f"{function.__name__}-{uuid.uuid4().hex}"
+    waiting: dict[str, tuple[J, Future[Any]]] = {}
+    finished: SimpleQueue[Future[Any]] = SimpleQueue()
+    remaining = iter(jobs)
+    room, counted = 0, -THREADS_PERIOD
+    try:
+        while not should_stop():
+            if time.monotonic() - counted >= THREADS_PERIOD:
+                room, counted = _room(client), time.monotonic()
+            batch = _take(remaining, room - len(waiting))
+            for job, future in _submit(client, function, batch, prefix):
+                waiting[str(future.key)] = (job, future)
+                future.add_done_callback(finished.put)
+            if not waiting:
+                return
+            try:
+                key = str(finished.get(timeout=POLL_PERIOD).key)
+            except Empty:
+                continue
+            job, future = waiting.pop(key)
+            row = _row_of(future)
+            # The scheduler forgets a result that nobody holds.
+            future.release()
+            on_row(job, row)
+    except (OSError, TimeoutError) as error:
+        raise _lost(client, error) from None
+    finally:
+        for _, future in waiting.values():
+            future.release()
+
+
+def failed(end: str) -> Row:
+    """The row of a run that has no measures."""
+    return {"end": printable(end, 1000), "survived": False}
+
+
+def _room(client: Client) -> int:
+    """Number of jobs that may be at the cluster: each worker has one, and the next ones are at the scheduler."""
+    if client.status != "running":
+        raise OSError("the connection is closed")
+    threads: dict[str, int] = client.nthreads()
+    return 2 * sum(threads.values()) + 2
+
+
+def _take[J](jobs: Iterator[J], number: int) -> list[J]:
+    return [job for _, job in zip(range(number), jobs, strict=False)]
+
+
+def _submit[J: Indexed](
+    client: Client, function: Callable[[J], Row], jobs: list[J], prefix: str
+) -> list[tuple[J, Future[Any]]]:
+    if not jobs:
+        return []
+    keys = [f"{prefix}-{job.index}" for job in jobs]
+    # As data producers, tasks wait at the scheduler and not at a worker, where the death of the worker would count
+    # against them; see worker-saturation in Dask's documentation.
+    graph = {key: Task(key, function, job, _data_producer=True) for key, job in zip(keys, jobs, strict=True)}
+    futures = client.get(graph, keys, sync=False)
+    return list(zip(jobs, futures, strict=True))
+
+
+def _row_of(future: Future[Any]) -> Row:
+    if future.status in ("cancelled", "lost"):
+        raise OSError("the connection was lost")
+    error = future.exception()
+    if error is None:
+        row: Row = future.result()
+        return row
+    if isinstance(error, KilledWorker):
+        return failed(f"killed its worker {error.allowed_failures + 1} times")
+    if isinstance(error, ParameterError):
+        return failed(f"refused: {error}")
+    return failed(f"error: {type(error).__name__}: {error}")
+
+
+def _lost(client: Client, error: Exception) -> ParameterError:
+    address = client.scheduler.address if client.scheduler else ""
+    return ParameterError(
+        f"scheduler {printable(address)}: {printable(error)}; allowed: one that is reachable until the end; finished "
+        "rows are kept; start it, and give the same command again"
+    )
+
+
+def run_study(
+    study: Study,
+    folder: Path | str,
+    client: Client,
+    on_progress: Callable[[int, int, Row], None] = lambda done, all_rows, row: None,
+    should_stop: Callable[[], bool] = never,
+    function: Callable[[Job], Row] = simulate_row,
+) -> pa.Table:
+    """Simulate the points of a study that its folder has no rows of, and return the table.
+
+    Args:
+        study: what to simulate.
+        folder: of the table; a new one, or that of the same study, which resumes.
+        client: of the Dask cluster; see `humanwalk.study.cluster`.
+        on_progress: called with the number of finished rows, of all rows, and each new row.
+        should_stop: asked several times a second; true ends the study, which can be resumed.
+        function: what a worker does with a job.
+
+    Raises:
+        ParameterError: a point or the folder cannot be used, or the scheduler is gone; finished rows are kept.
+    """
+    folder = Path(folder)
+    require_valid(study)
+    with open_journal(folder, study) as journal:
+
+        def add(job: Job, row: Row) -> None:
+            journal.append(job.index, row)
+            on_progress(len(journal.done), len(study.points), row)
+
+        try:
+            run_jobs(client, function, list_jobs(study, journal), add, should_stop)
+        finally:
+            journal.finish()
+    return read_table(folder)
+
+
+def require_valid(study: Study) -> None:
+    """Raise ParameterError for the first point whose scenario cannot be used."""
+    for _ in study.scenarios():
+        pass
+
+
+def list_jobs(study: Study, journal: Journal) -> Iterator[Job]:
+    """Jobs of the points that have no row, in order."""
+    for index, point in enumerate(study.points):
+        if index not in journal.done:
+            folder = journal.folder.absolute() / RUNS / f"{index:06d}" if study.keep == "runs" else None
+            yield Job(index, study.scenario_at(point), folder)

@@ -1,0 +1,165 @@
+"""The study: a base scenario, factors and a design. One dataclass is the file format.
+
+    description: Step height against support force
+    scenario: thesis
+    set: {duration: 8}
+    factors:
+      controller.thesis.gait.path.step_height: {range: {low: 0.05, high: 0.25, number: 9}}
+      seed: {seeds: {count: 5}}
+    design: full_factorial
+
+`scenario` is a shipped name, a path relative to the study file, or the fields of a scenario. Names of factors are
+fields of the scenario as with `--set`; entries of lists are named by their index: `pushes.given.0.direction`.
+"""
+
+import copy
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal
+
+from humanwalk.files import read_text
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, plain, replace_value
+from humanwalk.quantity import ParameterError, choice, choices_by_name, did_you_mean, printable
+from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
+from humanwalk.study.design import DESIGNS, Design, FullFactorial, Point
+from humanwalk.study.factors import FACTORS, Factor, Values
+from humanwalk.yaml_text import read_yaml, shown
+
+Keep = Literal["summary", "runs"]
+
+
+@dataclass(frozen=True)
+class Study:
+    """Runs of one scenario that differ in factors."""
+
+    description: str = ""
+    """One line for people."""
+
+    scenario: Scenario = Scenario()
+    """What the runs have in common."""
+
+    set: Mapping[str, Any] = field(default_factory=dict)
+    """Fields of the scenario that are replaced in every run, by dotted name."""
+
+    factors: Mapping[str, Factor] = choices_by_name(FACTORS)
+    """What differs between the runs, by dotted name of the field."""
+
+    design: Design = choice(DESIGNS, FullFactorial())
+    """How factors are combined."""
+
+    keep: Keep = "summary"
+    """`summary`: one row of the table for each run. `runs`: also the run folders, without replay and plots."""
+
+    @cached_property
+    def points(self) -> Sequence[Point]:
+        """The points of the design; the index of a point is that of its row in the table.
+
+        Raises:
+            ParameterError: the factors do not fit the design, or are too many points.
+        """
+        return self.design.points(self.factors)
+
+    @cached_property
+    def base(self) -> dict[str, Any]:
+        """The scenario with `set` as a mapping, every field written out."""
+        data = plain(self.scenario)
+        for name, value in self.set.items():
+            replace_value(Scenario, data, name, value)
+        return data
+
+    @cached_property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the factors, or with the design `rows` of the file's columns."""
+        return tuple(dict.fromkeys([*self.factors, *(name for point in self.points for name in point)]))
+
+    def value_at(self, point: Point, name: str) -> Any:
+        """Value of a factor at a point; that of the scenario where the point has none, None for no variant."""
+        if name in point:
+            return point[name]
+        value: Any = self.base
+        for part in name.split("."):
+            key: Any = int(part) if isinstance(value, list) and part.isdecimal() else part
+            try:
+                value = value[key]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return value
+
+    def overrides(self, point: Point) -> dict[str, Any]:
+        """Values of scenario fields at a point, by dotted name."""
+        values: dict[str, Any] = {}
+        for name, level in point.items():
+            values |= self.factors.get(name, _FIELD).overrides(name, level)
+        return values
+
+    def scenario_at(self, point: Point) -> Scenario:
+        """The scenario of a run.
+
+        Raises:
+            ParameterError: a value that cannot be used; the message begins with the point.
+        """
+        try:
+            data = copy.deepcopy(self.base)
+            for name, value in self.overrides(point).items():
+                replace_value(Scenario, data, name, value)
+            return build(Scenario, data)
+        except ParameterError as error:
+            at = ", ".join(f"{name}: {shown(value)}" for name, value in point.items())
+            raise ParameterError(f"point ({printable(at, 300)}): {error}") from None
+
+    def scenarios(self) -> Iterator[Scenario]:
+        """The scenarios of all points in order; see `scenario_at`."""
+        return map(self.scenario_at, self.points)
+
+
+_FIELD = Values((None,))
+"""Stands for a column of the design `rows`: a field of the scenario."""
+
+
+def shipped_studies() -> dict[str, Path]:
+    """Files of the studies that come with humanwalk, by name."""
+    folder = Path(str(resources.files("humanwalk"))) / "models" / "studies"
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def load_study(name_or_path: str | Path) -> Study:
+    """Load a shipped study by name, or any study by the path of its file.
+
+    Raises:
+        ParameterError: no such study, not a study, or a value that cannot be used; one line.
+    """
+    shipped = shipped_studies()
+    path = shipped.get(str(name_or_path), Path(name_or_path))
+    # Path.exists raises for names that are too long.
+    if not os.path.exists(path):
+        raise ParameterError(
+            f"study: {printable(name_or_path)}: no such study or file; allowed: {', '.join([*shipped, ''])}the path "
+            f"of a YAML file{did_you_mean(str(name_or_path), tuple(shipped))}"
+        )
+    return parse_study(read_text(path, MAX_FILE_SIZE), path.name, path.parent)
+
+
+def parse_study(text: str, name: str = "study", folder: Path = Path()) -> Study:
+    """Study from YAML text; relative paths in it count from `folder`. See `load_study`."""
+    data = read_yaml(text, name)
+    folder = Path(os.path.abspath(folder))
+    anchor_paths(Study, data, folder)
+    scenario = data.get("scenario")
+    if isinstance(scenario, str):
+        data["scenario"] = plain(load_scenario(scenario if scenario in shipped_scenarios() else folder / scenario))
+    factors = data.get("factors")
+    if isinstance(factors, dict):
+        # The shorthand for a list of values.
+        data["factors"] = {
+            key: {"values": entry} if isinstance(entry, list) else entry for key, entry in factors.items()
+        }
+    return build(Study, data)
+
+
+def dump_study(study: Study) -> str:
+    """The complete study as YAML, every field written out; `parse_study` reads it back to an equal one."""
+    return dump(study)

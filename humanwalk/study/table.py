@@ -1,0 +1,315 @@
+"""The table of a study on disk: a journal that grows row by row, and the same rows as Parquet.
+
+    study.yaml      the complete study
+    points.csv      the points of a study with the design `rows`
+    table.csv       one line per finished run; in the order of the points once all are finished
+    table.parquet   the rows in the order of the points; written at the end, and every minute or less often
+    runs/000012/    the run folder of row 12, with `keep: runs`
+
+Guarantees. A line is appended by one process at a time, which holds a lock on the folder, and is handed to the
+operating system before the next run is awaited: the rows survive the end of the process, whatever ends it. A line that
+was cut by a full disk or by the end of the process is dropped when the study resumes, and its run is repeated. No row
+appears twice. A loss of power may cost the rows of the last seconds.
+"""
+
+import csv
+import io
+import json
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet as pq
+
+from humanwalk.files import (
+    WRITABLE,
+    file_errors,
+    locked,
+    make_folder,
+    read_regular,
+    require_inside,
+    write_text,
+    write_whole,
+)
+from humanwalk.quantity import ParameterError, printable
+from humanwalk.study.design import MAX_CSV_BYTES, Rows
+from humanwalk.study.row import Row, run_columns
+from humanwalk.study.study import Study, dump_study, load_study
+
+STUDY = "study.yaml"
+POINTS = "points.csv"
+TABLE = "table.csv"
+PARQUET = "table.parquet"
+RUNS = "runs"
+"""Names inside the folder of a study."""
+
+ROW = "row"
+"""Column of a row's index."""
+
+NOT_REPRODUCED = ("wall_time_s", "realtime_factor", "host")
+"""Columns that differ when a run is repeated."""
+
+MAX_TABLE_BYTES = 4_000_000_000
+
+ARROW: Mapping[type, pa.DataType] = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
+
+PARQUET_PERIOD = 60.0
+"""Time between two writings of the Parquet file [s]; longer where one takes more than a hundredth of it."""
+
+
+def table_columns(study: Study) -> dict[str, type]:
+    """Columns of a study's table with their types: index, factors, measures, origin.
+
+    Raises:
+        ParameterError: a factor has the name of another column. Only `seed`, a measure as well, may.
+    """
+    measures = dict(run_columns())
+    for name in study.columns:
+        if name == ROW or (name in measures and name != "seed"):
+            raise ParameterError(
+                f"factors.{name}: the table has another column of that name; allowed: fields of the scenario, other "
+                "names for variants; rename it"
+            )
+    factors = {name: _type_of([study.value_at(point, name) for point in study.points]) for name in study.columns}
+    return {ROW: int} | factors | measures
+
+
+def _type_of(values: list[Any]) -> type:
+    """The narrowest type of a column that holds values; text also holds lists and groups, as JSON."""
+    kinds = {type(value) for value in values if value is not None}
+    return next(kind for kind, fits in _FITTING.items() if kinds <= fits)
+
+
+_FITTING: dict[type, set[type]] = {
+    int: {int},
+    float: {int, float},
+    bool: {bool},
+    str: {int, float, bool, str, list, dict},
+}
+"""By type of a column: types of values that it can hold."""
+
+
+@dataclass
+class Journal:
+    """The table of a study that is being filled; see the guarantees of this module.
+
+    Attributes:
+        folder: of the study; locked.
+        study: whose points have rows.
+        done: indices of the rows that the table has.
+    """
+
+    folder: Path
+    study: Study
+    done: set[int]
+    _kinds: dict[str, type]
+    _next_parquet: float = 0.0
+
+    def append(self, index: int, row: Row) -> None:
+        """Add the row of a finished run; a value that it does not have is an empty cell.
+
+        Raises:
+            ParameterError: it cannot be written; the table is as before.
+        """
+        assert index not in self.done
+        point = self.study.points[index]
+        factors = {name: self.study.value_at(point, name) for name in self.study.columns}
+        values = row | {ROW: index} | {name: value for name, value in factors.items() if value is not None}
+        _append(self.folder / TABLE, _line([_cell(values.get(name), kind) for name, kind in self._kinds.items()]))
+        self.done.add(index)
+        if time.monotonic() >= self._next_parquet:
+            # A disk that is full now may have room at the end.
+            with suppress(ParameterError):
+                self.write_parquet()
+
+    def write_parquet(self) -> None:
+        """Write the rows so far, in the order of the points, as Parquet."""
+        begin = time.monotonic()
+        table = read_rows(self.folder, self._kinds, len(self.study.points))
+        write_whole(self.folder / PARQUET, lambda beside: pq.write_table(table, beside, compression="zstd"))
+        end = time.monotonic()
+        self._next_parquet = end + max(PARQUET_PERIOD, 100.0 * (end - begin))
+
+    def finish(self) -> None:
+        """Put the lines of a complete table in the order of the points, and write the Parquet file."""
+        header, *lines = _whole_lines(self.folder / TABLE)
+        ordered = sorted(lines, key=_index_of)
+        if lines != ordered:
+            content = b"".join([header, *ordered])
+            write_whole(self.folder / TABLE, lambda beside: beside.write_bytes(content))
+        self.write_parquet()
+
+
+@contextmanager
+def open_journal(folder: Path, study: Study) -> Iterator[Journal]:
+    """Make the folder of a study or open one to resume it; within the block no other process writes into it.
+
+    Raises:
+        ParameterError: the folder holds something else, is in use, or cannot be written.
+    """
+    kinds = table_columns(study)
+    make_folder(folder)
+    busy = f"-o {printable(folder)}: another study writes into it; allowed: one at a time; wait, or choose another"
+    with locked(folder, busy):
+        _require_same(folder, study)
+        done: set[int] = set()
+        header = _line(list(kinds))
+        table = folder / TABLE
+        lines = _whole_lines(table) if table.exists() else []
+        if lines:
+            done = set(read_rows(folder, kinds, len(study.points))[ROW].to_pylist())
+            with file_errors(table, WRITABLE):
+                os.truncate(table, sum(len(line) for line in lines))
+        else:
+            write_whole(table, lambda beside: beside.write_bytes(header))
+        yield Journal(folder, study, done, kinds, time.monotonic() + PARQUET_PERIOD)
+
+
+def read_table(folder: Path | str) -> pa.Table:
+    """The rows of a study so far, in the order of its points.
+
+    Raises:
+        ParameterError: the folder holds no study, or its table was changed.
+    """
+    study = read_study(folder)
+    return read_rows(Path(folder), table_columns(study), len(study.points))
+
+
+def read_study(folder: Path | str) -> Study:
+    """The study of a folder.
+
+    Raises:
+        ParameterError: the folder holds no study, or one that cannot be read.
+    """
+    path = require_inside(Path(folder), Path(folder) / STUDY)
+    with file_errors(path, "a folder that you may read"):
+        found = path.is_file()
+    if not found:
+        raise ParameterError(
+            f"{printable(folder)}: no study, {STUDY} is missing; allowed: a folder written by humanwalk study; give "
+            "its path"
+        )
+    study = load_study(path)
+    if isinstance(study.design, Rows):
+        require_inside(Path(folder), Path(study.design.file))
+    return study
+
+
+def read_rows(folder: Path, kinds: Mapping[str, type], points: int) -> pa.Table:
+    """Read table.csv of a folder; a line that was cut at the end is left out.
+
+    Args:
+        folder: of the study.
+        kinds: types of the columns by name.
+        points: number of points of the study.
+
+    Raises:
+        ParameterError: it is no table of this study.
+    """
+    path = require_inside(folder, folder / TABLE)
+    header, *lines = _whole_lines(path)
+    if header != _line(list(kinds)):
+        raise _refusal(path, "columns of another study, or of another version of humanwalk")
+    schema = {name: ARROW[kind] for name, kind in kinds.items()}
+    if not lines:
+        return pa.schema(list(schema.items())).empty_table()
+    try:
+        table = pyarrow.csv.read_csv(
+            io.BytesIO(b"".join([header, *lines])),
+            pyarrow.csv.ReadOptions(use_threads=False),
+            convert_options=pyarrow.csv.ConvertOptions(
+                column_types=schema,
+                null_values=[""],
+                strings_can_be_null=True,
+                true_values=["true"],
+                false_values=["false"],
+            ),
+        )
+    except (pa.ArrowException, ValueError) as error:
+        raise _refusal(path, printable(error)) from None
+    rows = table[ROW].to_numpy()
+    if table[ROW].null_count or rows.min() < 0 or rows.max() >= points:
+        raise _refusal(path, f"an index of a row that is not in 0 to {points - 1}")
+    if np.unique(rows).size < rows.size:
+        raise _refusal(path, "a row twice")
+    return table.take(np.argsort(rows))
+
+
+def _require_same(folder: Path, study: Study) -> None:
+    """Write the study into an empty folder, or raise ParameterError unless the folder is of the same study."""
+    kept = _with_kept_points(study)
+    if (folder / STUDY).exists():
+        found = read_study(folder)
+        if _with_kept_points(found) != kept or found.points != study.points:
+            raise ParameterError(
+                f"-o {printable(folder)}: holds another study; allowed: a new folder, or that of the same study, which "
+                "resumes; choose another"
+            )
+        return
+    with file_errors(folder, WRITABLE):
+        if any(not entry.name.startswith(".") for entry in folder.iterdir() if entry.name != POINTS):
+            raise ParameterError(
+                f"-o {printable(folder)}: holds files already; allowed: a new or empty folder, or that of the same "
+                "study; choose another, or remove it first"
+            )
+    if isinstance(study.design, Rows):
+        content = read_regular(Path(study.design.file), MAX_CSV_BYTES)
+        write_whole(folder / POINTS, lambda beside: beside.write_bytes(content))
+    # The last: a folder with it is one of a study.
+    write_text(folder / STUDY, dump_study(kept))
+
+
+def _with_kept_points(study: Study) -> Study:
+    """The study as its folder has it: points from a file are those of the copy."""
+    design = study.design
+    return replace(study, design=replace(design, file=POINTS)) if isinstance(design, Rows) else study
+
+
+def _whole_lines(path: Path) -> list[bytes]:
+    """Lines of a table with their ends, without one that was cut at the end."""
+    lines = read_regular(path, MAX_TABLE_BYTES).splitlines(keepends=True)
+    return lines if not lines or lines[-1].endswith(b"\n") else lines[:-1]
+
+
+def _append(path: Path, line: bytes) -> None:
+    with file_errors(path, WRITABLE), path.open("ab", buffering=0) as file:
+        before = file.tell()
+        written = 0
+        try:
+            while written < len(line):
+                written += file.write(line[written:]) or 0
+        except OSError:
+            file.truncate(before)
+            raise
+
+
+def _line(cells: list[str]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue().encode()
+
+
+def _cell(value: Any, kind: type) -> str:
+    if value is None:
+        return ""
+    if kind is str:
+        return value if isinstance(value, str) else json.dumps(value)
+    return repr(kind(value)).lower()
+
+
+def _index_of(line: bytes) -> int:
+    return int(line.partition(b",")[0])
+
+
+def _refusal(path: Path, reason: str) -> ParameterError:
+    return ParameterError(
+        f"{printable(path)}: {reason}; allowed: the file as humanwalk study wrote it; restore it, or choose another "
+        "folder with -o"
+    )
