@@ -51,16 +51,15 @@ def run(
     scheduler: SchedulerOption = None,
 ) -> None:
     """Run a study: simulate its points on all cores, and write a row of the table as each ends. Resumes."""
-    from humanwalk.run.monitor import first_signal
+    from humanwalk.run.monitor import caught_signals
     from humanwalk.study.execute import require_valid, run_study
     from humanwalk.study.study import load_study
 
     loaded = load_study(study)
     with console.status(f"checking {len(loaded.points)} points"):
         require_valid(loaded)
-    stopped: list[int] = []
     with (
-        first_signal(stopped.append),
+        caught_signals() as stopped,
         workers_client(workers, scheduler) as client,
         counted_progress("runs", estimate_period=3600.0) as progress,
     ):

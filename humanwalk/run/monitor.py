@@ -89,31 +89,45 @@ class Monitor:
 
     @contextmanager
     def stop_on_signal(self) -> Iterator[None]:
-        """Within the block, STOP_SIGNALS end the simulation at the next check; a second Ctrl-C acts as before.
+        """Within the block, STOP_SIGNALS end the simulation at the next check; see `caught_signals`.
 
         A signal that arrives too late to end the simulation acts at the end of the block, so that a run that is
-        written in the block is not lost. A signal that the process ignores, as SIGHUP under nohup, stays ignored.
-        Outside of the main thread, which alone may handle signals, nothing changes.
+        written in the block is not lost.
         """
-        before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
-        before = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
-        if threading.current_thread() is not threading.main_thread():
-            before = {}
-        received: list[int] = []
 
-        def stop(number: int, frame: object) -> None:
-            if number == signal.SIGINT and number in received:
-                signal.signal(number, before[signal.SIGINT])
-                os.kill(os.getpid(), number)
-            received.append(number)
+        def stop() -> None:
             self.interrupted = True
 
-        for number in before:
-            signal.signal(number, stop)
-        try:
+        with caught_signals(stop) as received:
             yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
         if received and self.reason != INTERRUPTED:
             os.kill(os.getpid(), received[0])
+
+
+@contextmanager
+def caught_signals(stop: Callable[[], object] = lambda: None) -> Iterator[list[int]]:
+    """Within the block, STOP_SIGNALS call `stop` and are listed; a second Ctrl-C acts as before.
+
+    A signal that the process ignores, as SIGHUP under nohup, stays ignored. Outside of the main thread, which alone may
+    handle signals, nothing changes.
+    """
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+    before = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+    if threading.current_thread() is not threading.main_thread():
+        before = {}
+    received: list[int] = []
+
+    def catch(number: int, frame: object) -> None:
+        if number == signal.SIGINT and number in received:
+            signal.signal(number, before[signal.SIGINT])
+            os.kill(os.getpid(), number)
+        received.append(number)
+        stop()
+
+    for number in before:
+        signal.signal(number, catch)
+    try:
+        yield received
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
