@@ -81,6 +81,8 @@ def walk_and_write(
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))
+    if run.summary["fall"] is not None:
+        console.print(run.summary["fall"]["description"], soft_wrap=True)
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
     if replay:
         console.print(f"show it: humanwalk replay {run.path}")
