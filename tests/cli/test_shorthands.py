@@ -134,14 +134,14 @@ def test_the_speed_is_the_greatest_that_is_commanded(name: str) -> None:
 
 
 def test_commanded_speeds_change_in_proportion_and_turns_stay() -> None:
-    points = changed("corner", speed=0.8).controller.command.points  # type: ignore[attr-defined]
+    points = changed("corner", speed=0.8).controller.command.points
     assert [(point.forward, point.turn) for point in points] == [(0.8, 0.0), (0.8, 0.4), (0.8, 0.0)]
-    stops = changed("start_stop", speed=0.8).controller.command.points  # type: ignore[attr-defined]
+    stops = changed("start_stop", speed=0.8).controller.command.points
     assert [point.forward for point in stops] == [0.8, 0.0]
 
 
 def test_a_walker_that_steps_sideways_gets_the_speed_too() -> None:
-    (point,) = changed("sideways", speed=0.8).controller.command.points  # type: ignore[attr-defined]
+    (point,) = changed("sideways", speed=0.8).controller.command.points
     assert (point.forward, point.sideways) == (0.8, 0.3)
 
 
