@@ -5,12 +5,20 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from humanwalk.cli import inspection_commands, run_commands, simulation_commands, study_commands
+from humanwalk.cli import inspection_commands, run_commands, simulation_commands, study_commands, tuning_commands
 from humanwalk.cli.common import BAD_INPUT, MAX_MESSAGE, app, console
 from humanwalk.cli.streams import discard, exit_on_signals, open_missing
 from humanwalk.quantity import ParameterError, printable
 
-__all__ = ["app", "inspection_commands", "main", "run_commands", "simulation_commands", "study_commands"]
+__all__ = [
+    "app",
+    "inspection_commands",
+    "main",
+    "run_commands",
+    "simulation_commands",
+    "study_commands",
+    "tuning_commands",
+]
 
 
 def main() -> None:

@@ -145,7 +145,11 @@ def load_study(name_or_path: str | Path) -> Study:
 
 def parse_study(text: str, name: str = "study", folder: Path = Path()) -> Study:
     """Study from YAML text; relative paths in it count from `folder`. See `load_study`."""
-    data = read_yaml(text, name)
+    return build(Study, complete(read_yaml(text, name), folder))
+
+
+def complete(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The mapping of a study file without shorthands; relative paths in it count from `folder`."""
     folder = Path(os.path.abspath(folder))
     anchor_paths(Study, data, folder)
     scenario = data.get("scenario")
@@ -157,7 +161,7 @@ def parse_study(text: str, name: str = "study", folder: Path = Path()) -> Study:
         data["factors"] = {
             key: {"values": entry} if isinstance(entry, list) else entry for key, entry in factors.items()
         }
-    return build(Study, data)
+    return data
 
 
 def dump_study(study: Study) -> str:

@@ -6,26 +6,17 @@
     table.parquet   the rows in the order of the points; written at the end, and every minute or less often
     runs/000012/    the run folder of row 12, with `keep: runs`
 
-Guarantees. A line is appended by one process at a time, which holds a lock on the folder, and is handed to the
-operating system before the next run is awaited: the rows survive the end of the process, whatever ends it. A line that
-was cut by a full disk or by the end of the process is dropped when the study resumes, and its run is repeated. No row
-appears twice. A loss of power may cost the rows of the last seconds.
+One process at a time writes: it holds a lock on the folder. `humanwalk.study.journal` has the guarantees of table.csv.
 """
 
-import csv
-import io
-import json
-import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.parquet as pq
 
 from humanwalk.files import (
@@ -39,6 +30,7 @@ from humanwalk.files import (
     write_whole,
 )
 from humanwalk.quantity import ParameterError, printable
+from humanwalk.study import journal
 from humanwalk.study.design import MAX_CSV_BYTES, Rows
 from humanwalk.study.row import Row, run_columns
 from humanwalk.study.study import Study, dump_study, load_study
@@ -55,10 +47,6 @@ ROW = "row"
 
 NOT_REPRODUCED = ("wall_time_s", "realtime_factor", "host")
 """Columns that differ when a run is repeated."""
-
-MAX_TABLE_BYTES = 4_000_000_000
-
-ARROW: Mapping[type, pa.DataType] = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
 
 PARQUET_PERIOD = 60.0
 """Time between two writings of the Parquet file [s]; longer where one takes more than a hundredth of it."""
@@ -122,7 +110,7 @@ class Journal:
         point = self.study.points[index]
         factors = {name: self.study.value_at(point, name) for name in self.study.columns}
         values = row | {ROW: index} | {name: value for name, value in factors.items() if value is not None}
-        _append(self.folder / TABLE, _line([_cell(values.get(name), kind) for name, kind in self._kinds.items()]))
+        journal.append(self.folder / TABLE, self._kinds, values)
         self.done.add(index)
         if time.monotonic() >= self._next_parquet:
             # A disk that is full now may have room at the end.
@@ -132,18 +120,14 @@ class Journal:
     def write_parquet(self) -> None:
         """Write the rows so far, in the order of the points, as Parquet."""
         begin = time.monotonic()
-        table = read_rows(self.folder, self._kinds, len(self.study.points))
+        table = journal.read(self.folder / TABLE, self._kinds, len(self.study.points))
         write_whole(self.folder / PARQUET, lambda beside: pq.write_table(table, beside, compression="zstd"))
         end = time.monotonic()
         self._next_parquet = end + max(PARQUET_PERIOD, 100.0 * (end - begin))
 
     def finish(self) -> None:
         """Put the lines of a complete table in the order of the points, and write the Parquet file."""
-        header, *lines = _whole_lines(self.folder / TABLE)
-        ordered = sorted(lines, key=_index_of)
-        if lines != ordered:
-            content = b"".join([header, *ordered])
-            write_whole(self.folder / TABLE, lambda beside: beside.write_bytes(content))
+        journal.sort(self.folder / TABLE)
         self.write_parquet()
 
 
@@ -159,16 +143,8 @@ def open_journal(folder: Path, study: Study) -> Iterator[Journal]:
     busy = f"-o {printable(folder)}: another study writes into it; allowed: one at a time; wait, or choose another"
     with locked(folder, busy):
         _require_same(folder, study)
-        done: set[int] = set()
-        header = _line(list(kinds))
-        table = folder / TABLE
-        lines = _whole_lines(table) if table.exists() else []
-        if lines:
-            done = set(read_rows(folder, kinds, len(study.points))[ROW].to_pylist())
-            with file_errors(table, WRITABLE):
-                os.truncate(table, sum(len(line) for line in lines))
-        else:
-            write_whole(table, lambda beside: beside.write_bytes(header))
+        path = require_inside(folder, folder / TABLE)
+        done = set(journal.start(path, kinds, len(study.points))[ROW].to_pylist())
         yield Journal(folder, study, done, kinds, time.monotonic() + PARQUET_PERIOD)
 
 
@@ -179,7 +155,8 @@ def read_table(folder: Path | str) -> pa.Table:
         ParameterError: the folder holds no study, or its table was changed.
     """
     study = read_study(folder)
-    return read_rows(Path(folder), table_columns(study), len(study.points))
+    path = require_inside(Path(folder), Path(folder) / TABLE)
+    return journal.read(path, table_columns(study), len(study.points))
 
 
 def read_study(folder: Path | str) -> Study:
@@ -200,46 +177,6 @@ def read_study(folder: Path | str) -> Study:
     if isinstance(study.design, Rows):
         require_inside(Path(folder), Path(study.design.file))
     return study
-
-
-def read_rows(folder: Path, kinds: Mapping[str, type], points: int) -> pa.Table:
-    """Read table.csv of a folder; a line that was cut at the end is left out.
-
-    Args:
-        folder: of the study.
-        kinds: types of the columns by name.
-        points: number of points of the study.
-
-    Raises:
-        ParameterError: it is no table of this study.
-    """
-    path = require_inside(folder, folder / TABLE)
-    header, *lines = _whole_lines(path)
-    if header != _line(list(kinds)):
-        raise _refusal(path, "columns of another study, or of another version of humanwalk")
-    schema = {name: ARROW[kind] for name, kind in kinds.items()}
-    if not lines:
-        return pa.schema(list(schema.items())).empty_table()
-    try:
-        table = pyarrow.csv.read_csv(
-            io.BytesIO(b"".join([header, *lines])),
-            pyarrow.csv.ReadOptions(use_threads=False),
-            convert_options=pyarrow.csv.ConvertOptions(
-                column_types=schema,
-                null_values=[""],
-                strings_can_be_null=True,
-                true_values=["true"],
-                false_values=["false"],
-            ),
-        )
-    except (pa.ArrowException, ValueError) as error:
-        raise _refusal(path, printable(error)) from None
-    rows = table[ROW].to_numpy()
-    if table[ROW].null_count or rows.min() < 0 or rows.max() >= points:
-        raise _refusal(path, f"an index of a row that is not in 0 to {points - 1}")
-    if np.unique(rows).size < rows.size:
-        raise _refusal(path, "a row twice")
-    return table.take(np.argsort(rows))
 
 
 def _require_same(folder: Path, study: Study) -> None:
@@ -270,46 +207,3 @@ def _with_kept_points(study: Study) -> Study:
     """The study as its folder has it: points from a file are those of the copy."""
     design = study.design
     return replace(study, design=replace(design, file=POINTS)) if isinstance(design, Rows) else study
-
-
-def _whole_lines(path: Path) -> list[bytes]:
-    """Lines of a table with their ends, without one that was cut at the end."""
-    lines = read_regular(path, MAX_TABLE_BYTES).splitlines(keepends=True)
-    return lines if not lines or lines[-1].endswith(b"\n") else lines[:-1]
-
-
-def _append(path: Path, line: bytes) -> None:
-    with file_errors(path, WRITABLE), path.open("ab", buffering=0) as file:
-        before = file.tell()
-        written = 0
-        try:
-            while written < len(line):
-                written += file.write(line[written:]) or 0
-        except OSError:
-            file.truncate(before)
-            raise
-
-
-def _line(cells: list[str]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(cells)
-    return text.getvalue().encode()
-
-
-def _cell(value: Any, kind: type) -> str:
-    if value is None:
-        return ""
-    if kind is str:
-        return value if isinstance(value, str) else json.dumps(value)
-    return repr(kind(value)).lower()
-
-
-def _index_of(line: bytes) -> int:
-    return int(line.partition(b",")[0])
-
-
-def _refusal(path: Path, reason: str) -> ParameterError:
-    return ParameterError(
-        f"{printable(path)}: {reason}; allowed: the file as humanwalk study wrote it; restore it, or choose another "
-        "folder with -o"
-    )

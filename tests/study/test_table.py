@@ -120,15 +120,15 @@ def test_points_of_a_file_are_kept_with_the_table(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "match"),
     [
-        (lambda text: text.replace("row,", "rows,", 1), "columns of another study"),
+        (lambda text: text.replace("row,", "rows,", 1), "columns of another study or tuning"),
         (lambda text: text + text.splitlines(keepends=True)[1], "a row twice"),
         (lambda text: text.replace("\n1,", "\n6,"), "not in 0 to 5"),
         (lambda text: text.replace("\n1,", "\n-1,"), "not in 0 to 5"),
         (lambda text: text.replace("\n1,", "\n,"), "not in 0 to 5"),
-        (lambda text: text.replace("\n1,", "\nx,"), "allowed: the file as humanwalk study wrote it"),
-        (lambda text: text.replace("\n1,", "\n1,,"), "allowed: the file as humanwalk study wrote it"),
-        (lambda text: text.replace("true", "maybe"), "allowed: the file as humanwalk study wrote it"),
-        (lambda text: text + "\0\n", "allowed: the file as humanwalk study wrote it"),
+        (lambda text: text.replace("\n1,", "\nx,"), "allowed: the file as humanwalk study or tune wrote it"),
+        (lambda text: text.replace("\n1,", "\n1,,"), "allowed: the file as humanwalk study or tune wrote it"),
+        (lambda text: text.replace("true", "maybe"), "allowed: the file as humanwalk study or tune wrote it"),
+        (lambda text: text + "\0\n", "allowed: the file as humanwalk study or tune wrote it"),
     ],
 )
 def test_table_that_was_changed_is_refused_in_one_line(tmp_path: Path, change: Any, match: str) -> None:

@@ -1,0 +1,101 @@
+"""Commands of tunings."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
+from humanwalk.cli.study_commands import RunsByDefault, SchedulerOption, WorkersOption, workers_client
+
+if TYPE_CHECKING:
+    from humanwalk.study.row import Row
+
+tune_app = typer.Typer(
+    cls=RunsByDefault, no_args_is_help=True, help="Search for parameters of a scenario that walk better."
+)
+app.add_typer(tune_app, name="tune", rich_help_panel=STUDY)
+
+
+@tune_app.command(
+    epilog="Examples: humanwalk tune cost_of_transport -o tunings/cheap  |  humanwalk tune my.yaml -o tunings/my"
+)
+def run(
+    tuning: Annotated[str, typer.Argument(help="A shipped tuning's name, or the path of a YAML file.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder of the trials; that of the same tuning resumes.")
+    ],
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+) -> None:
+    """Run a tuning: simulate its trials on all cores, and write a row of the table as each ends. Resumes."""
+    from humanwalk.run.monitor import caught_signals
+    from humanwalk.study.trials import best
+    from humanwalk.study.tune import tune
+    from humanwalk.study.tuning import load_tuning
+
+    loaded = load_tuning(tuning)
+    done: Mapping[int, Row] = {}
+    with (
+        caught_signals() as stopped,
+        workers_client(workers, scheduler) as client,
+        counted_progress("trials", estimate_period=3600.0) as progress,
+    ):
+        task = progress.add_task("", total=loaded.trials)
+
+        def look(rows: "Mapping[int, Row]") -> None:
+            nonlocal done
+            done = rows
+            found = best(loaded, list(rows.values()))
+            name = f"{Path(tuning).stem}: {describe(loaded, found)}" if found else Path(tuning).stem
+            progress.update(task, completed=len(rows), description=name)
+
+        tune(loaded, output, client, on_trial=look, should_stop=lambda: bool(stopped))
+    console.print(f"{output}: {len(done)} of {loaded.trials} trials", soft_wrap=True)
+    found = best(loaded, list(done.values()))
+    if found:
+        console.print(f"best: {describe(loaded, found)}", soft_wrap=True)
+    if len(done) < loaded.trials:
+        console.print("interrupted; the same command resumes")
+        raise typer.Exit(INTERRUPTED)
+    console.print(f"show it: humanwalk tune show {output}", soft_wrap=True)
+
+
+@tune_app.command(epilog="Example: humanwalk tune show tunings/cheap")
+def show(folder: Annotated[Path, typer.Argument(help="Folder of a tuning, finished or not.")]) -> None:
+    """Print the best trial and write it as a scenario, best.yaml, for humanwalk walk."""
+    from rich.table import Table
+
+    from humanwalk.study.trials import best, read_trials, write_best
+    from humanwalk.study.tuning import start_values
+
+    tuning, rows = read_trials(folder)
+    found = best(tuning, rows)
+    if found is None:
+        stdout.print(f"{folder}: no trial has walked yet")
+        return
+    parameters = Table("parameter", "low", "start", "best", "high")
+    for name, start in start_values(tuning).items():
+        limits = tuning.parameters[name]
+        cells = (limits.low, start, found[f"parameters.{name}"], limits.high)
+        parameters.add_row(name, *(f"{value:g}" for value in cells))
+    stdout.print(parameters)
+    values = Table("measure", "start", "best")
+    for name in tuning.measured:
+        values.add_row(name, *(shown_number(row[f"values.{name}"]) for row in (rows[0], found)))
+    stdout.print(values)
+    path = write_best(folder, tuning, found)
+    console.print(f"{folder}: {len(rows)} of {tuning.trials} trials; {describe(tuning, found)}", soft_wrap=True)
+    console.print(f"walk it: humanwalk walk {path}", soft_wrap=True)
+
+
+def describe(tuning: Any, row: Mapping[str, Any]) -> str:
+    """A trial on one line."""
+    values = ", ".join(f"{name} {shown_number(row[f'values.{name}'])}" for name in tuning.measured)
+    return f"trial {row['trial']}, {values}" + ("" if row["feasible"] else " (a bound does not hold)")
+
+
+def shown_number(value: float | None) -> str:
+    """Four digits; a dash for a value that a trial does not have."""
+    return "-" if value is None else f"{value:.4g}"

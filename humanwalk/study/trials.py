@@ -1,0 +1,171 @@
+"""The table of a tuning on disk: its trials with parameters, values and cost.
+
+tuning.yaml     the complete tuning
+trials.csv      one line per finished trial; see `humanwalk.study.journal` for its guarantees
+best.yaml       the scenario of the best trial, by `tune show`
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from humanwalk.files import WRITABLE, file_errors, locked, make_folder, require_inside, write_text
+from humanwalk.quantity import ParameterError, printable
+from humanwalk.scenario import dump_scenario
+from humanwalk.study import journal
+from humanwalk.study.objectives import Score, measured, score
+from humanwalk.study.row import Row
+from humanwalk.study.trial import RUNS
+from humanwalk.study.tuning import MAX_TRIALS, Tuning, dump_tuning, load_tuning
+
+TUNING = "tuning.yaml"
+TRIALS = "trials.csv"
+BEST = "best.yaml"
+"""Names inside the folder of a tuning."""
+
+TRIAL = "trial"
+"""Column of a trial's number."""
+
+
+def trial_columns(tuning: Tuning) -> dict[str, type]:
+    """Columns of the table of trials with their types."""
+    parameters = {f"parameters.{name}": float for name in tuning.parameters}
+    values = {f"values.{name}": float for name in tuning.measured}
+    outcome = {"upright_share": float, "runs": int, "falls": int, "end": str, "wall_time_s": float, "host": str}
+    return {TRIAL: int} | parameters | values | {"cost": float, "feasible": bool} | outcome
+
+
+def trial_row(tuning: Tuning, trial: int, parameters: Mapping[str, float], returned: Row) -> Row:
+    """The row of a finished trial.
+
+    Args:
+        tuning: the tuning.
+        trial: number of the trial.
+        parameters: values by field.
+        returned: by the worker; without RUNS if the trial failed as a whole.
+    """
+    points = tuning.runs.points
+    simulated: Sequence[Row] = returned.get(RUNS, [])
+    rows = [*simulated, *[None] * (len(points) - len(simulated))]
+    values = {name: measured(name, what, points, rows) for name, what in tuning.measured.items()}
+    upright = sum(row["upright_share"] for row in simulated) / len(points)
+    found = score(tuning.objectives, tuning.bounds, values, upright)
+    ends = [row["end"] for row in simulated if not row["survived"]]
+    return (
+        {TRIAL: trial}
+        | {f"parameters.{name}": value for name, value in parameters.items()}
+        | {f"values.{name}": value for name, value in values.items()}
+        | {"cost": found.cost, "feasible": found.feasible, "upright_share": upright}
+        | {"runs": len(simulated), "falls": len(ends)}
+        | {"end": returned.get("end") or (ends[0] if ends else "completed")}
+        | {"wall_time_s": sum(row["wall_time_s"] for row in simulated)}
+        | {"host": simulated[0]["host"] if simulated else ""}
+    )
+
+
+def score_of(tuning: Tuning, row: Row) -> Score:
+    """The score of a trial from its row."""
+    values = {name: row[f"values.{name}"] for name in tuning.measured}
+    return score(tuning.objectives, tuning.bounds, values, row["upright_share"])
+
+
+@dataclass
+class TrialTable:
+    """The table of a tuning that is being filled; its folder is locked.
+
+    Attributes:
+        path: of the file.
+        tuning: whose trials it holds.
+        rows: of the finished trials by number.
+    """
+
+    path: Path
+    tuning: Tuning
+    rows: dict[int, Row]
+
+    def append(self, trial: int, row: Row) -> None:
+        """Add the row of a finished trial."""
+        journal.append(self.path, trial_columns(self.tuning), row)
+        self.rows[trial] = row
+
+
+@contextmanager
+def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
+    """Make the folder of a tuning or open one to resume it; within the block no other process writes into it.
+
+    Raises:
+        ParameterError: the folder holds something else, is in use, or cannot be written.
+    """
+    make_folder(folder)
+    busy = f"-o {printable(folder)}: another tuning writes into it; allowed: one at a time; wait, or choose another"
+    with locked(folder, busy):
+        _claim(folder, tuning)
+        path = folder / TRIALS
+        rows = journal.start(path, trial_columns(tuning), MAX_TRIALS).to_pylist()
+        yield TrialTable(path, tuning, {row[TRIAL]: row for row in rows})
+
+
+def _claim(folder: Path, tuning: Tuning) -> None:
+    """Write the tuning into an empty folder, or raise ParameterError unless the folder is of the same tuning."""
+    if (folder / TUNING).exists():
+        # More trials continue a tuning.
+        if replace(read_tuning(folder), trials=tuning.trials) != tuning:
+            raise ParameterError(
+                f"-o {printable(folder)}: holds another tuning; allowed: a new folder, or that of the same tuning, "
+                "which resumes; choose another"
+            )
+    else:
+        with file_errors(folder, WRITABLE):
+            if any(not entry.name.startswith(".") for entry in folder.iterdir()):
+                raise ParameterError(
+                    f"-o {printable(folder)}: holds files already; allowed: a new or empty folder, or that of the same "
+                    "tuning; choose another, or remove it first"
+                )
+    write_text(folder / TUNING, dump_tuning(tuning))
+
+
+def read_tuning(folder: Path) -> Tuning:
+    """The tuning of a folder.
+
+    Raises:
+        ParameterError: the folder holds no tuning, or one that cannot be read.
+    """
+    path = require_inside(folder, folder / TUNING)
+    with file_errors(path, "a folder that you may read"):
+        found = path.is_file()
+    if not found:
+        raise ParameterError(
+            f"{printable(folder)}: no tuning, {TUNING} is missing; allowed: a folder written by humanwalk tune; give "
+            "its path"
+        )
+    return load_tuning(path)
+
+
+def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:
+    """The tuning of a folder, and the rows of its trials so far in order.
+
+    Raises:
+        ParameterError: the folder holds no tuning, or its table was changed.
+    """
+    tuning = read_tuning(folder)
+    table = journal.read(require_inside(folder, folder / TRIALS), trial_columns(tuning), MAX_TRIALS)
+    return tuning, table.to_pylist()
+
+
+def best(tuning: Tuning, rows: Sequence[Row]) -> Row | None:
+    """The trial of least cost of those within all bounds, else of those that walk; None if no trial walks.
+
+    With several objectives of nsga2 it is one point of the Pareto front, chosen by the weights.
+    """
+    walking = [row for row in rows if not score_of(tuning, row).violations["unfinished"]]
+    return min(walking, key=lambda row: (not row["feasible"], row["cost"], row[TRIAL]), default=None)
+
+
+def write_best(folder: Path, tuning: Tuning, row: Row) -> Path:
+    """Write the scenario of a trial into the folder of a tuning."""
+    path = folder / BEST
+    scenario = tuning.scenario({name: row[f"parameters.{name}"] for name in tuning.parameters})
+    text = f"trial {row[TRIAL]} of a tuning: {tuning.description}"
+    write_text(path, dump_scenario(replace(scenario, description=text)))
+    return path
