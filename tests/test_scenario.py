@@ -468,4 +468,4 @@ def test_same_key_in_two_groups_is_no_doubling() -> None:
     scenario = parse_scenario(
         f"_a: &a {{time: 1.0}}\n_b: *a\ncontroller: {{balanced: {{command: {{points: {points}}}}}}}\n"
     )
-    assert len(scenario.controller.command.points) == 2  # type: ignore[attr-defined]
+    assert len(scenario.controller.command.points) == 2

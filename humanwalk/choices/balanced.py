@@ -1,7 +1,7 @@
 """The controller that balances: step planner and whole-body program, no external force."""
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
@@ -76,7 +76,15 @@ class BalancedController:
 
     @property
     def commanded_speed(self) -> float:
-        return max((point.forward for point in self.command.points), key=abs, default=0.0)
+        return self.command.greatest_forward
+
+    @property
+    def untested(self) -> tuple[str, ...]:
+        return self.command.untested
+
+    def fields_for_speed(self, speed: float) -> dict[str, Any]:
+        """The points of the command."""
+        return {"command.points": [asdict(point) for point in self.command.points_at_speed(speed)]}
 
     def steady_from(self, subject: Subject) -> float:
         """When the first change of speed is over and the walk has settled [s]."""

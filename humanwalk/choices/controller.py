@@ -54,6 +54,17 @@ class Controller(Protocol):
     def commanded_speed(self) -> float | None:
         """Greatest forward speed that is commanded [m/s]; None where a recording prescribes it."""
 
+    @property
+    def untested(self) -> tuple[str, ...]:
+        """What is commanded beyond the tested range, one line each."""
+
+    def fields_for_speed(self, speed: float) -> dict[str, Any]:
+        """Fields of the controller, by dotted name, with the values for another greatest forward speed [m/s].
+
+        Raises:
+            ParameterError: the controller takes no speed.
+        """
+
     def steady_from(self, subject: Subject) -> float:
         """Time from which the walk is steady, so that measures count [s]."""
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
@@ -54,6 +55,17 @@ class RecordedController:
     @property
     def physics(self) -> bool:
         return not self.kinematic
+
+    @property
+    def untested(self) -> tuple[str, ...]:
+        return ()
+
+    def fields_for_speed(self, speed: float) -> dict[str, Any]:
+        """Raise ParameterError: the recording has its own speed."""
+        raise ParameterError(
+            f"--speed {speed:g}: a recording has its own speed; allowed: with a controller that is commanded; leave it "
+            "out"
+        )
 
     def steady_from(self, subject: Subject) -> float:
         """When the recording runs at full speed [s]."""

@@ -1,7 +1,7 @@
 """The thesis' controller: foot paths by splines, inverse kinematics of the legs, assumed balance."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
@@ -81,6 +81,15 @@ class ThesisController:
     @property
     def commanded_speed(self) -> float:
         return self.gait.ramp.speed
+
+    @property
+    def untested(self) -> tuple[str, ...]:
+        """Nothing: the support keeps the body upright at every speed."""
+        return ()
+
+    def fields_for_speed(self, speed: float) -> dict[str, Any]:
+        """The speed at the end of the ramp."""
+        return {"gait.ramp.speed": speed}
 
     def steady_from(self, subject: Subject) -> float:
         """When the ramp is over and the first foot has landed [s]."""

@@ -69,28 +69,9 @@ STUDY = "Studies: many runs"
 INSPECT = "Models, diagrams and cost"
 
 ScenarioArgument = Annotated[str, typer.Argument(help="A shipped scenario's name, or the path of a YAML file.")]
-SetOption = Annotated[
-    list[str],
-    typer.Option("--set", metavar="FIELD=VALUE", help="Replace a field of the scenario; can be given several times."),
-]
 LookOption = Annotated[
     str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
 ]
-
-
-def overrides_of(pairs: list[str]) -> dict[str, str]:
-    """Fields and values of --set.
-
-    Raises:
-        ParameterError: A pair is not FIELD=VALUE.
-    """
-    overrides = {}
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        if not equals or not key:
-            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
-        overrides[key] = value
-    return overrides
 
 
 def require_look(look: str) -> None:

@@ -5,16 +5,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from humanwalk.cli.changes import Changes, SetOption, overrides_of, takes_changes
 from humanwalk.cli.common import (
     INSPECT,
     INTERRUPTED,
     LookOption,
     ScenarioArgument,
-    SetOption,
     app,
     console,
     counted_progress,
-    overrides_of,
     require_look,
     stdout,
 )
@@ -50,10 +49,11 @@ def model(
 
 
 @app.command(rich_help_panel=INSPECT, epilog="Example: humanwalk diagram thesis -o diagram.svg")
+@takes_changes
 def diagram(
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write; svg, png or pdf by its suffix.")],
+    changes: Changes,
     scenario: ScenarioArgument = "thesis",
-    set_: SetOption = [],  # noqa: B006
     depth: Annotated[int, typer.Option(min=0, max=5, help="Number of levels of diagrams to expand.")] = 1,
     every_port: Annotated[bool, typer.Option("--every-port", help="Also draw unconnected ports.")] = False,
 ) -> None:
@@ -62,7 +62,7 @@ def diagram(
     from humanwalk.scenario import load_scenario
     from humanwalk.view.diagram_picture import draw_diagram
 
-    draw_diagram(make_diagram(load_scenario(scenario, overrides_of(set_))), output, depth, every_port)
+    draw_diagram(make_diagram(load_scenario(scenario, changes.overrides(scenario))), output, depth, every_port)
     console.print(f"{output}", soft_wrap=True)
 
 

@@ -5,16 +5,15 @@ from typing import Annotated
 
 import typer
 
+from humanwalk.cli.changes import Changes, takes_changes
 from humanwalk.cli.common import (
     DIFFERS,
     FELL,
     INTERRUPTED,
     SIMULATE,
     ScenarioArgument,
-    SetOption,
     app,
     console,
-    overrides_of,
     require_look,
     stdout,
 )
@@ -24,15 +23,17 @@ from humanwalk.quantity import ParameterError
 @app.command(
     rich_help_panel=SIMULATE,
     epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
+    'humanwalk walk walk --speed 1.2 --push "60 N s at 8 s from behind"  |  '
     "humanwalk walk thesis --set controller.thesis.gait.path.step_height=0.12 --set contact=hydroelastic",
 )
+@takes_changes
 def walk(
+    changes: Changes,
     scenario: ScenarioArgument = "thesis",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder of the run; new or empty. Default: runs/SCENARIO.")
     ] = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s], instead of the scenario's.")] = None,
-    set_: SetOption = [],  # noqa: B006
     look: Annotated[
         str | None, typer.Option(help="person or bones, instead of the scenario's; the motion is the same.")
     ] = None,
@@ -51,13 +52,14 @@ def walk(
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
     from humanwalk.cli.walk import follow_overrides, walk_and_write
 
-    overrides = overrides_of(set_)
+    recorded: dict[str, str] = {}
     if follow is not None:
-        overrides |= follow_overrides(follow, mapping, kinematic)
+        recorded = follow_overrides(follow, mapping, kinematic)
     elif kinematic:
         raise ParameterError("--kinematic: no recording; allowed: with --follow FILE; name the recording")
     elif mapping is not None:
         raise ParameterError(f"--mapping {mapping}: no recording; allowed: with --follow FILE; name the recording")
+    overrides = changes.overrides(scenario, recorded)
     if duration is not None:
         overrides["duration"] = repr(duration)
     if look is not None:

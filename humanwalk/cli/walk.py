@@ -53,6 +53,8 @@ def walk_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
+    for line in loaded.controller.untested:
+        console.print(f"warning: {line}", soft_wrap=True)
     meshcat = make_meshcat(live=live) if live or replay else None
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
@@ -79,6 +81,8 @@ def walk_and_write(
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))
+    if run.summary["fall"] is not None:
+        console.print(run.summary["fall"]["description"], soft_wrap=True)
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
     if replay:
         console.print(f"show it: humanwalk replay {run.path}")

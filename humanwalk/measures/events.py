@@ -85,10 +85,10 @@ def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents
     """
     contact = _with_hysteresis(force)
     rows = force.size
-    for first, end in _phases(~contact):
+    for first, end in stretches(~contact):
         if end - first < rows and time[min(end, rows - 1)] - time[first] < MIN_SWING_S:
             contact[first:end] = True
-    for first, end in _phases(contact):
+    for first, end in stretches(contact):
         if first > 0 and end < rows and time[end] - time[first] < MIN_STANCE_S:
             contact[first:end] = False
     change = np.diff(contact.astype(int))
@@ -113,7 +113,7 @@ def _with_hysteresis(force: Array) -> Mask:
     return on[np.maximum.accumulate(decided)]
 
 
-def _phases(mask: Mask) -> list[tuple[int, int]]:
+def stretches(mask: Mask) -> list[tuple[int, int]]:
     """First row, and row after the last one, of every stretch of true rows."""
     edges = np.flatnonzero(np.diff(mask.astype(int), prepend=0, append=0))
     return [(int(first), int(end)) for first, end in edges.reshape(-1, 2)]

@@ -10,6 +10,7 @@ import pyarrow as pa
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
+from humanwalk.measures.fall import FallReport, report_fall
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.path import path_deviation
 from humanwalk.measures.signals import TIME, matrix
@@ -27,7 +28,7 @@ class Summary(TypedDict):
     end: str
     physics: bool
     duration_s: float
-    fall_time_s: float | None
+    fall: FallReport | None
     steady_from_s: float | None
     distance_m: float
     mean_speed_m_s: float | None
@@ -85,7 +86,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "end": end,
         "physics": physics,
         "duration_s": float(time[-1]),
-        "fall_time_s": float(time[-1]) if end == "fell" else None,
+        "fall": report_fall(signals, scenario.subject.mass) if end == "fell" else None,
         "steady_from_s": steady_from,
         "distance_m": float(com[-1, 0] - com[0, 0]),
         "mean_speed_m_s": _slope(time[steady], com[steady, 0]),

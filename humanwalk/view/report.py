@@ -48,8 +48,10 @@ def compare_run(run: Run) -> Comparison:
     run.require_physics()
     end = run.summary["end"]
     if end not in UP_AT_ITS_END:
+        fall = run.summary["fall"]
+        ended = f"ended with '{end}' at {run.summary['duration_s']:.2f} s" if fall is None else fall["description"]
         raise ParameterError(
-            f"{run.path}: the run ended with '{end}' at {run.summary['duration_s']:.2f} s; allowed: a "
+            f"{run.path}: the run {ended}; allowed: a "
             f"run that did not fall, with {MIN_STRIDES} strides of each leg; re-run with a shorter --duration"
         )
     try:

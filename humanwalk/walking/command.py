@@ -1,6 +1,6 @@
 """The commanded velocity over time: target speeds at given times, approached at bounded rates."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -38,6 +38,14 @@ class CommandPoint:
     """To the left."""
 
 
+TESTED = {
+    "forward": ("m/s", ((-0.5, 0.0), (0.3, 1.4))),
+    "sideways": ("m/s", ((-0.3, 0.3),)),
+    "turn": ("rad/s", ((-0.4, 0.4),)),
+}
+"""Unit and tested ranges of each commanded speed: the tables of docs/balance.md."""
+
+
 @dataclass(frozen=True)
 class CommandParameters:
     """The command over time; zero before the first point."""
@@ -58,6 +66,33 @@ class CommandParameters:
                 raise ParameterError(
                     f"points: time {later:g} comes after {earlier:g}; allowed: increasing times; sort the points"
                 )
+
+    @property
+    def greatest_forward(self) -> float:
+        """Greatest forward speed of a point, backward ones by their size [m/s]; 0 without points."""
+        return max((point.forward for point in self.points), key=abs, default=0.0)
+
+    def points_at_speed(self, speed: float) -> tuple[CommandPoint, ...]:
+        """The points with another greatest forward speed [m/s], the others in proportion.
+
+        Points without any forward speed all get the new one; without points there is one at 1 s.
+        """
+        greatest = self.greatest_forward
+        points = self.points or CommandParameters.points
+        return tuple(
+            replace(point, forward=speed * (point.forward / greatest if greatest else 1.0)) for point in points
+        )
+
+    @property
+    def untested(self) -> tuple[str, ...]:
+        """Commanded speeds beyond the tested ranges, one line each."""
+        return tuple(
+            f"commanded {name} {getattr(point, name):g} {unit} at {point.time:g} s is not tested; tested: "
+            f"{' and '.join(f'{low:g} to {high:g}' for low, high in ranges)} {unit} (docs/balance.md)"
+            for point in self.points
+            for name, (unit, ranges) in TESTED.items()
+            if not any(low <= getattr(point, name) <= high for low, high in ranges)
+        )
 
 
 class CommandProfile:

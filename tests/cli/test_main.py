@@ -174,7 +174,7 @@ def test_walk_writes_its_files(humanwalk: Any, tmp_path: Path) -> None:
         "scenario",
         "survived",
         "duration_s",
-        "fall_time_s",
+        "fall",
         "mean_speed_m_s",
         "lateral_drift_m",
         "foot_lift_m",
@@ -225,7 +225,8 @@ def test_fall_has_an_exit_code_and_a_run(humanwalk: Any, tmp_path: Path) -> None
     assert "fell" in err
     summary = json.loads((tmp_path / "fallen" / "summary.json").read_text())
     assert summary["survived"] is False
-    assert summary["fall_time_s"] == summary["duration_s"]
+    assert summary["fall"]["time_s"] == summary["duration_s"]
+    assert summary["fall"]["description"] in err
 
 
 def test_interrupted_walk_keeps_its_run(tmp_path: Any) -> None:

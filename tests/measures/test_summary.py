@@ -62,7 +62,7 @@ def test_summary_has_the_documented_keys(columns: tuple[str, ...], joints: Joint
         "scenario",
         "survived",
         "duration_s",
-        "fall_time_s",
+        "fall",
         "mean_speed_m_s",
         "lateral_drift_m",
         "foot_lift_m",
@@ -109,7 +109,7 @@ def test_summary_of_a_walk_of_known_measures(columns: tuple[str, ...], joints: J
     assert summary["pelvis_tracking_rms_m"] == pytest.approx(0.05)
     assert summary["realtime_factor"] == pytest.approx(2.5)
     assert summary["survived"] is True
-    assert summary["fall_time_s"] is None
+    assert summary["fall"] is None
     assert summary["external_support"] is True
 
 
@@ -133,7 +133,7 @@ def test_run_without_a_steady_part_has_null_there(columns: tuple[str, ...]) -> N
     assert set(summary["tracking_error_rad"].values()) == {None}
     assert summary["foot_lift_m"] == {"left": None, "right": None}
     assert summary["survived"] is False
-    assert summary["fall_time_s"] == pytest.approx(0.2)
+    assert summary["fall"]["time_s"] == pytest.approx(0.2)
 
 
 def test_walk_that_never_becomes_steady_by_its_scenario_has_null_there(columns: tuple[str, ...]) -> None:
@@ -155,7 +155,7 @@ def test_run_that_ended_in_no_number_is_still_strict_json(columns: tuple[str, ..
 @pytest.mark.parametrize("end", ["interrupted", "not a number", "solver failed: x"])
 def test_run_that_ended_for_another_reason_did_not_fall(columns: tuple[str, ...], end: str) -> None:
     summary = summary_of(walk_of(columns), end=end)
-    assert (summary["survived"], summary["fall_time_s"], summary["end"]) == (False, None, end)
+    assert (summary["survived"], summary["fall"], summary["end"]) == (False, None, end)
 
 
 def test_run_without_support_is_marked(columns: tuple[str, ...]) -> None:

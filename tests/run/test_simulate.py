@@ -215,7 +215,7 @@ def test_walker_without_support_falls_and_its_record_is_kept(fall: Any) -> None:
 def test_fall_is_summarised(fall: Any) -> None:
     summary = fall.summary("thesis")
     assert summary["survived"] is False
-    assert summary["fall_time_s"] == pytest.approx(fall.signals[TIME][-1].as_py())
+    assert summary["fall"]["time_s"] == pytest.approx(fall.signals[TIME][-1].as_py())
     assert summary["external_support"] is False
     summary_table(summary)
 

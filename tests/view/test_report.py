@@ -129,10 +129,19 @@ def test_json_is_all_that_is_printed_and_nothing_is_written(make_run: Callable[.
     assert not (run.path / REPORT).exists()
 
 
-@pytest.mark.parametrize("end", ["fell", "not a number", "solver failed: no"])
-def test_fallen_run_is_refused(make_run: Callable[..., Any], end: str) -> None:
+@pytest.mark.parametrize("end", ["not a number", "solver failed: no"])
+def test_failed_run_is_refused(make_run: Callable[..., Any], end: str) -> None:
     with pytest.raises(ParameterError, match=f"ended with '{end}' at 8.00 s; allowed"):
         compare_run(make_run(end))
+
+
+def test_fallen_run_is_refused_with_when_where_and_why_it_fell(make_run: Callable[..., Any]) -> None:
+    run = make_run("fell")
+    with pytest.raises(
+        ParameterError, match=r"the run fell at 8.00 s, pelvis at .*; likely cause: .*; allowed"
+    ) as error:
+        compare_run(run)
+    assert run.summary["fall"]["description"] in str(error.value)
 
 
 @pytest.mark.parametrize("end", ["interrupted", "unfinished"])

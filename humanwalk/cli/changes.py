@@ -1,0 +1,146 @@
+"""The options that change a scenario, the same for every command that takes one: --set and its shorthands."""
+
+import dataclasses
+import functools
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from humanwalk.quantity import ParameterError
+
+# The help lists the shorthands without importing their grammar, and Drake with it; a test compares both.
+
+
+PANEL = "Changes of the scenario"
+
+
+def _option(*names: str, help: str, metavar: str | None = None) -> Any:
+    return typer.Option(*names, help=help, metavar=metavar, rich_help_panel=PANEL)
+
+
+SetOption = Annotated[
+    list[str],
+    _option(
+        "--set",
+        metavar="FIELD=VALUE",
+        help="Replace a field of the scenario; can be given several times.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Changes:
+    """Changes of a scenario, as written on the command line; every field is an option."""
+
+    set_: SetOption = dataclasses.field(default_factory=list)
+    speed: Annotated[
+        float | None,
+        _option(help="Greatest forward speed that is commanded [m/s]; other forward speeds in proportion."),
+    ] = None
+    push: Annotated[
+        list[str],
+        _option(
+            metavar="PUSH",
+            help='Push, instead of the scenario\'s, like "60 N s at 8 s from behind"; can be given several times. '
+            "Grammar: IMPULSE N s at TIME s from SIDE [for DURATION s] [on BODY]; SIDE is front, behind, left, right, "
+            "or an angle like 45 deg: 0 is the front, 90 the left (of a walker that faces x).",
+        ),
+    ] = dataclasses.field(default_factory=list)
+    mass: Annotated[float | None, _option(help="Body mass [kg].")] = None
+    stature: Annotated[float | None, _option(help="Standing height [m].")] = None
+    terrain: Annotated[
+        str | None,
+        _option(
+            metavar="TERRAIN",
+            help='Ground, like "slope 3 deg" or "plane slope 3 deg, friction coefficient 0.5". '
+            "Grammar: [TERRAIN] [FIELD VALUE [UNIT]], ...",
+        ),
+    ] = None
+
+    def overrides(self, scenario: str, base: Mapping[str, str] | None = None) -> dict[str, str]:
+        """Overrides by field name, for `load_scenario`: `base`, then those of --set, then the shorthands.
+
+        Args:
+            scenario: Name or path; the field that commands the speed depends on its controller.
+            base: Other overrides by field name.
+
+        Raises:
+            ParameterError: a text that cannot be read, or a scenario whose speed cannot be set.
+        """
+        from humanwalk.cli.shorthands import push_overrides, terrain_overrides
+
+        overrides = {**(base or {}), **overrides_of(self.set_)}
+        for name in ("mass", "stature"):
+            if getattr(self, name) is not None:
+                overrides[f"subject.{name}"] = repr(getattr(self, name))
+        if self.terrain is not None:
+            overrides |= terrain_overrides(self.terrain)
+        if self.push:
+            overrides |= push_overrides(self.push)
+        if self.speed is not None:
+            overrides |= speed_overrides(self.speed, scenario, overrides)
+        return overrides
+
+
+def overrides_of(pairs: list[str]) -> dict[str, str]:
+    """Fields and values of --set.
+
+    Raises:
+        ParameterError: A pair is not FIELD=VALUE.
+    """
+    overrides = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key:
+            raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
+        overrides[key] = value
+    return overrides
+
+
+def speed_overrides(speed: float, scenario: str, overrides: dict[str, str]) -> dict[str, str]:
+    """Overrides that set the commanded forward speed [m/s] of a scenario with overrides.
+
+    Raises:
+        ParameterError: its controller takes no speed.
+    """
+    from humanwalk.choices import CONTROLLERS
+    from humanwalk.quantity import tag_of
+    from humanwalk.scenario import load_scenario
+
+    controller = load_scenario(scenario, overrides).controller
+    tag = tag_of(CONTROLLERS, controller)
+    return {
+        f"controller.{tag}.{field}": json.dumps(value) for field, value in controller.fields_for_speed(speed).items()
+    }
+
+
+def takes_changes(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command an option for every field of its parameter `changes`, a `Changes`."""
+    hints = get_type_hints(Changes, include_extras=True)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    options = [
+        inspect.Parameter(field.name, keyword, default=_default(field), annotation=hints[field.name])
+        for field in dataclasses.fields(Changes)
+    ]
+
+    @functools.wraps(command)
+    def with_options(**arguments: Any) -> None:
+        changes = Changes(**{option.name: arguments.pop(option.name) for option in options})
+        command(**arguments, changes=changes)
+
+    parameters: list[inspect.Parameter] = []
+    for parameter in inspect.signature(command).parameters.values():
+        if parameter.name == "changes":
+            parameters.extend(options)
+        else:
+            parameters.append(parameter.replace(kind=keyword))
+    vars(with_options)["__signature__"] = inspect.Signature(parameters)
+    return with_options
+
+
+def _default(field: dataclasses.Field[Any]) -> Any:
+    return field.default if field.default_factory is dataclasses.MISSING else field.default_factory()

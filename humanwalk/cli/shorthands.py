@@ -1,0 +1,135 @@
+"""Shorthands of the command line for fields of a scenario: text in, overrides by field name out."""
+
+import dataclasses
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from humanwalk.quantity import ParameterError, did_you_mean, printable
+from humanwalk.terrain import TERRAINS
+from humanwalk.walking.push import Push
+
+PUSH_GRAMMAR = "IMPULSE N s at TIME s from SIDE [for DURATION s] [on BODY]"
+PUSH_EXAMPLE = "60 N s at 8 s from behind"
+SIDES_GRAMMAR = "SIDE is front, behind, left, right, or an angle like 45 deg: 0 is the front, 90 the left"
+TERRAIN_GRAMMAR = "[TERRAIN] [FIELD VALUE [UNIT]], ..."
+TERRAIN_EXAMPLE = "plane slope 3 deg, friction coefficient 0.5"
+
+BEARINGS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
+"""Where a push comes from, for a walker that faces x: angle from x to the left [deg]."""
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+
+PUSH = re.compile(
+    rf"(?P<impulse>{NUMBER}) \s* N[\s*·]*s"
+    rf"\s+ at \s+ (?P<time>{NUMBER}) \s* s"
+    rf"\s+ from \s+ (?:the \s+)? (?:(?P<side>{'|'.join(BEARINGS)}) | (?P<angle>{NUMBER}) \s* deg)"
+    rf"(?: \s+ for \s+ (?P<duration>{NUMBER}) \s* s)?"
+    rf"(?: \s+ on \s+ (?:the \s+)? (?P<body>\w+))?",
+    re.VERBOSE,
+)
+FIELD = re.compile(rf"(?P<name>[A-Za-z_][A-Za-z_ ]*?)\s+(?:(?P<number>{NUMBER})\s*(?P<unit>\S*)|(?P<word>\S+))")
+
+UNITS: dict[str, dict[str, float]] = {
+    "rad": {"rad": 1.0, "deg": math.radians(1.0)},
+    "m": {"m": 1.0, "cm": 0.01, "mm": 0.001},
+    "s": {"s": 1.0, "ms": 0.001},
+}
+"""By unit of a field: units that may be written, and their size in it."""
+
+
+def push_overrides(texts: Sequence[str]) -> dict[str, str]:
+    """The given pushes of a scenario, like "60 N s at 8 s from behind".
+
+    Raises:
+        ParameterError: a text is no push.
+    """
+    return {"pushes.given": json.dumps([dataclasses.asdict(push_of(text)) for text in texts])}
+
+
+def push_of(text: str) -> Push:
+    """A push from its text; see `PUSH_GRAMMAR`.
+
+    Raises:
+        ParameterError: the text is no push.
+    """
+    found = PUSH.fullmatch(text.strip())
+    if found is None:
+        raise ParameterError(
+            f"--push {printable(text)}: not a push; allowed: {PUSH_GRAMMAR}, where {SIDES_GRAMMAR}; write it like "
+            f'"{PUSH_EXAMPLE}"'
+        )
+    bearing = BEARINGS[found["side"]] if found["side"] else float(found["angle"])
+    # The force points away from where it comes from.
+    direction = math.remainder(math.radians(bearing + 180.0), 2.0 * math.pi)
+    numbers = {name: float(found[name]) for name in ("impulse", "time", "duration") if found[name]}
+    return Push(direction=direction, body=found["body"] or Push.body, **numbers)
+
+
+def terrain_overrides(text: str) -> dict[str, str]:
+    """The terrain of a scenario, like "slope 3 deg" or "plane slope 3 deg, friction coefficient 0.5".
+
+    Raises:
+        ParameterError: no such terrain, field or unit.
+    """
+    first, *others = text.split(",")
+    tag, _, after_tag = first.strip().partition(" ")
+    if tag not in TERRAINS:
+        if not after_tag:
+            raise _terrain_error(text, f"no such terrain{did_you_mean(tag, tuple(TERRAINS))}")
+        tag, after_tag = "", first
+    fields = dict(_field(item, text) for item in (after_tag, *others) if item.strip())
+    tag = tag or _terrain_with(fields, text)
+    known = _fields(TERRAINS[tag])
+    for name in fields:
+        if name not in known:
+            raise _terrain_error(
+                text, f"{tag} has no field {name}, but {', '.join(known)}{did_you_mean(name, tuple(known))}"
+            )
+    values = {name: _in_unit(*written, known[name].metadata.get("unit", ""), text) for name, written in fields.items()}
+    return {"terrain": json.dumps({tag: values})}
+
+
+def _field(item: str, text: str) -> tuple[str, tuple[Any, str]]:
+    """Name of a field, and its value and unit."""
+    found = FIELD.fullmatch(item.strip())
+    if found is None:
+        raise _terrain_error(text, f"{printable(item.strip())} is not FIELD VALUE")
+    name = "_".join(found["name"].split())
+    return name, (found["word"] if found["number"] is None else float(found["number"]), found["unit"] or "")
+
+
+def _terrain_with(names: Mapping[str, Any], text: str) -> str:
+    """The only terrain that has all of the fields."""
+    fields = {tag: _fields(kind) for tag, kind in TERRAINS.items()}
+    having = [tag for tag, known in fields.items() if names.keys() <= known.keys()]
+    if len(having) > 1:
+        raise _terrain_error(text, f"{' and '.join(having)} have these fields; begin with one of them")
+    if not having:
+        every = sorted({name for known in fields.values() for name in known})
+        near = "".join(did_you_mean(name, every) for name in names if name not in every)
+        raise _terrain_error(text, f"no terrain has these fields{near}")
+    return having[0]
+
+
+def _fields(terrain: Any) -> dict[str, dataclasses.Field[Any]]:
+    return {field.name: field for field in dataclasses.fields(terrain)}
+
+
+def _in_unit(value: Any, written: str, unit: str, text: str) -> Any:
+    """A value in the unit of its field."""
+    if not written:
+        return value
+    units = UNITS.get(unit, {unit: 1.0} if unit else {})
+    if written not in units:
+        raise _terrain_error(text, f"{printable(written)} is no unit of it; write {' or '.join(units) or 'no unit'}")
+    return value * units[written]
+
+
+def _terrain_error(text: str, problem: str) -> ParameterError:
+    return ParameterError(
+        f"--terrain {printable(text)}: {problem}; allowed: {TERRAIN_GRAMMAR} with TERRAIN one of "
+        f'{", ".join(TERRAINS)}; write it like "{TERRAIN_EXAMPLE}"'
+    )

@@ -1,0 +1,195 @@
+"""The shorthands of the command line: their grammar, and the fields that they set."""
+
+import inspect
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.choices import CONTROLLERS
+from humanwalk.cli import shorthands
+from humanwalk.cli.changes import Changes, takes_changes
+from humanwalk.cli.main import app
+from humanwalk.cli.shorthands import BEARINGS, push_of, push_overrides, terrain_overrides
+from humanwalk.quantity import ParameterError, quantity
+from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
+from humanwalk.terrain import TERRAINS, Plane
+from humanwalk.walking.push import Push
+
+positive = st.floats(0.001, 1000.0, allow_nan=False)
+
+
+def changed(scenario: str = "walk", **changes: Any) -> Scenario:
+    return load_scenario(scenario, Changes(**changes).overrides(scenario))
+
+
+# --push
+
+
+def test_a_push_is_read_from_its_words() -> None:
+    assert push_of("60 N s at 8 s from behind") == Push(time=8.0, impulse=60.0, direction=0.0)
+    everything = push_of("3.5e1 N s at 2 s from the left for 0.3 s on the Head")
+    assert everything == Push(time=2.0, duration=0.3, impulse=35.0, direction=-math.pi / 2, body="Head")
+
+
+@pytest.mark.parametrize(
+    "text", ["60Ns at 8s from behind", "60 N*s at 8 s from behind", " 60 N·s  at 8 s from behind "]
+)
+def test_spaces_around_units_are_free(text: str) -> None:
+    assert push_of(text) == push_of("60 N s at 8 s from behind")
+
+
+@given(impulse=positive, time=positive, bearing=st.floats(-360.0, 360.0), duration=positive)
+def test_a_push_points_away_from_where_it_comes_from(
+    impulse: float, time: float, bearing: float, duration: float
+) -> None:
+    push = push_of(f"{impulse!r} N s at {time!r} s from {bearing!r} deg for {duration!r} s")
+    assert (push.impulse, push.time, push.duration) == (impulse, time, duration)
+    # x forward, y left; its source lies against the force.
+    source = (-push.force[0], -push.force[1])
+    size = math.hypot(*source)
+    assert source[0] / size == pytest.approx(math.cos(math.radians(bearing)), abs=1e-9)
+    assert source[1] / size == pytest.approx(math.sin(math.radians(bearing)), abs=1e-9)
+
+
+@pytest.mark.parametrize("side", BEARINGS)
+def test_the_sides_have_the_signs_of_the_world(side: str) -> None:
+    x, y, _ = push_of(f"10 N s at 1 s from {side}").force
+    toward = {"front": (-100, 0), "behind": (100, 0), "left": (0, -100), "right": (0, 100)}[side]
+    assert (x, y) == pytest.approx(toward, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "60 at 8", "60 N at 8 s from behind", "60 N s at 8 s", "60 N s at 8 s from above", "60 N s from behind"],
+)
+def test_another_text_is_refused_with_the_grammar(text: str) -> None:
+    with pytest.raises(ParameterError, match=r"not a push; allowed: IMPULSE N s at TIME s from SIDE"):
+        push_of(text)
+
+
+def test_pushes_replace_those_of_the_scenario() -> None:
+    texts = ["60 N s at 8 s from behind", "30 N s at 9 s from the right"]
+    assert changed("push", push=texts).pushes.given == tuple(push_of(text) for text in texts)
+    with pytest.raises(ParameterError, match=r"pushes.given.0.impulse: 5000 is out of range"):
+        load_scenario("walk", push_overrides(["5000 N s at 8 s from behind"]))
+
+
+# --terrain
+
+
+@pytest.mark.parametrize(
+    ("text", "terrain"),
+    [
+        ("plane", Plane()),
+        ("slope 3 deg", Plane(slope=math.radians(3.0))),
+        ("slope 0.05", Plane(slope=0.05)),
+        ("plane cross slope -2deg,friction_coefficient 0.5", Plane(0.0, math.radians(-2.0), 0.5)),
+    ],
+)
+def test_a_terrain_is_read_from_its_words(text: str, terrain: Plane) -> None:
+    assert changed(terrain=text).terrain == terrain
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("plain", "did you mean plane"),
+        ("slop 3 deg", "did you mean slope"),
+        ("plane friction 0.5", "did you mean friction_coefficient"),
+        ("slope 3 furlongs", "furlongs is no unit of it; write rad or deg"),
+        ("friction coefficient 0.5 kg", "kg is no unit of it; write no unit"),
+        ("plane slope", "slope is not FIELD VALUE"),
+        ("", "no such terrain"),
+    ],
+)
+def test_another_terrain_is_refused_with_the_grammar(text: str, problem: str) -> None:
+    with pytest.raises(ParameterError, match=problem) as refusal:
+        terrain_overrides(text)
+    assert shorthands.TERRAIN_GRAMMAR in str(refusal.value)
+
+
+def test_a_field_of_several_terrains_needs_the_terrain(monkeypatch: pytest.MonkeyPatch) -> None:
+    @dataclass(frozen=True)
+    class Hills(Plane):
+        height_of_hills: float = quantity(0.1, "m", 0.0, 1.0)
+
+    monkeypatch.setitem(TERRAINS, "hills", Hills)
+    with pytest.raises(ParameterError, match="plane and hills have these fields; begin with one of them"):
+        terrain_overrides("slope 3 deg")
+    assert changed(terrain="height_of_hills 20 cm").terrain == Hills(height_of_hills=0.2)
+
+
+# --speed, --mass, --stature
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_the_speed_is_the_greatest_that_is_commanded(name: str) -> None:
+    faster = changed(name, speed=0.75)
+    assert faster.controller.commanded_speed == 0.75
+    assert faster.subject == load_scenario(name).subject
+
+
+def test_commanded_speeds_change_in_proportion_and_turns_stay() -> None:
+    points = changed("corner", speed=0.8).controller.command.points
+    assert [(point.forward, point.turn) for point in points] == [(0.8, 0.0), (0.8, 0.4), (0.8, 0.0)]
+    stops = changed("start_stop", speed=0.8).controller.command.points
+    assert [point.forward for point in stops] == [0.8, 0.0]
+
+
+def test_a_walker_that_steps_sideways_gets_the_speed_too() -> None:
+    (point,) = changed("sideways", speed=0.8).controller.command.points
+    assert (point.forward, point.sideways) == (0.8, 0.3)
+
+
+def test_the_speed_is_that_of_the_controller_chosen_by_set() -> None:
+    balanced = changed("thesis", speed=0.8, set_=["controller=balanced"]).controller
+    assert isinstance(balanced, CONTROLLERS["balanced"])
+    assert balanced.commanded_speed == 0.8
+
+
+def test_a_recording_has_its_own_speed() -> None:
+    with pytest.raises(ParameterError, match="--speed 1: a recording has its own speed"):
+        changed("thesis", speed=1.0, set_=["controller={recorded: {angles: walk.mot}}"])
+
+
+def test_the_body_is_scaled() -> None:
+    subject = changed(mass=60.0, stature=1.6).subject
+    assert (subject.mass, subject.stature) == (60.0, 1.6)
+
+
+# Commands.
+
+
+def options() -> list[inspect.Parameter]:
+    def command(changes: Changes) -> None:
+        raise NotImplementedError
+
+    return list(inspect.signature(takes_changes(command)).parameters.values())
+
+
+def test_walk_and_diagram_take_the_same_changes() -> None:
+    names = {option.name for option in options()}
+    having = [
+        command.callback.__name__
+        for command in app.registered_commands
+        if command.callback is not None and names <= inspect.signature(command.callback).parameters.keys()
+    ]
+    assert {"walk", "diagram"} <= set(having)
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        shorthands.PUSH_GRAMMAR,
+        shorthands.SIDES_GRAMMAR,
+        shorthands.PUSH_EXAMPLE,
+        shorthands.TERRAIN_GRAMMAR,
+        shorthands.TERRAIN_EXAMPLE,
+    ],
+)
+def test_help_has_the_grammars(part: str) -> None:
+    assert part in " ".join(option.annotation.__metadata__[0].help for option in options())

@@ -1,0 +1,171 @@
+"""When, where and why a walker fell, on constructed records and on a real fall."""
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from humanwalk.measures.fall import CAUSES, FAILURES_IN_A_ROW, UNKNOWN, WINDOW, events_before_fall, report_fall
+from humanwalk.measures.signals import TIME
+from humanwalk.numerics import Array
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+from humanwalk.walking.walking_reference import Phase
+
+MASS = 70.0
+BEARINGS = {"the front": 0.0, "the left": 90.0, "behind": 180.0, "the right": -90.0}
+PERIOD, END, DOWN = 0.01, 10.0, 9.5
+"""Record of the falls below: the body goes down from DOWN on."""
+
+
+def fallen(**changes: Any) -> pa.Table:
+    """A walker that stands still, with both feet loaded, until it goes down; `changes` are functions of time."""
+    time = PERIOD * np.arange(round(END / PERIOD) + 1)
+    data = {"pelvis.z_m": 0.9 - np.clip(1.2 * (time - DOWN), 0.0, None), "pelvis.quaternion_w": np.ones_like(time)}
+    data |= {f"pelvis.{name}": np.zeros_like(time) for name in ("x_m", "y_m", *(f"quaternion_{a}" for a in "xyz"))}
+    data |= {f"push.force_{axis}_N": np.zeros_like(time) for axis in "xyz"}
+    for foot in ("right", "left"):
+        data |= {f"{foot}_sole.{axis}_m": np.zeros_like(time) for axis in "xyz"}
+        data |= {f"{foot}_foot.force_z_N": np.full_like(time, 350.0), f"{foot}_foot.friction_use": np.zeros_like(time)}
+    data |= {f"{point}.{axis}_m": np.zeros_like(time) for point in ("dcm", "dcm_reference") for axis in "xy"}
+    data |= {
+        "planner.phase": np.full_like(time, Phase.SINGLE_SUPPORT.value),
+        "qp.failures_in_a_row": np.zeros_like(time),
+    }
+    for name, value in changes.items():
+        data[name] = np.broadcast_to(value(time), time.shape).astype(float)
+    return pa.table({TIME: time, **data})
+
+
+def constant(value: float) -> Any:
+    return lambda time: np.full_like(time, value)
+
+
+def during(begin: float, end: float, value: float) -> Any:
+    return lambda time: np.where((time > begin - 1e-9) & (time < end - 1e-9), value, 0.0)
+
+
+def slide(distance: float, begin: float = 8.0, duration: float = 0.2) -> Any:
+    """A right foot that slides forward at the limit of friction."""
+    return {
+        "right_foot.friction_use": during(begin, begin + duration, 1.0),
+        "right_sole.x_m": lambda time: distance * np.clip((time - begin) / (duration - PERIOD), 0.0, 1.0),
+    }
+
+
+def landing(time: Array) -> Array:
+    """Phase of a walker whose foot lands at 8 s."""
+    return np.where(time < 8.0 - 1e-9, Phase.SINGLE_SUPPORT.value, Phase.DOUBLE_SUPPORT.value)
+
+
+EVENTS: dict[str, Any] = {
+    "push": {"push.force_y_N": during(8.0, 8.1, -600.0)},
+    "slip": slide(0.2),
+    "foothold out of reach": {"planner.phase": landing, "dcm.x_m": during(7.0, END, 0.5)},
+    "balance lost in standing": {
+        "planner.phase": constant(Phase.STAND.value),
+        "dcm.x_m": during(8.0, END, 0.5),
+    },
+    "QP failure": {"qp.failures_in_a_row": during(8.0, 8.2, FAILURES_IN_A_ROW)},
+}
+
+
+def test_every_cause_has_a_constructed_record() -> None:
+    assert EVENTS.keys() == CAUSES.keys()
+
+
+@pytest.mark.parametrize("cause", EVENTS)
+def test_the_event_before_a_fall_is_its_likely_cause(cause: str) -> None:
+    report = report_fall(fallen(**EVENTS[cause]), MASS)
+    assert report["cause"] == cause
+    (event,) = events_before_fall(fallen(**EVENTS[cause]), MASS)
+    assert event.time == pytest.approx(8.0)
+    assert event.text in report["description"]
+    assert "8.00 s" in event.text
+
+
+def test_a_fall_without_an_event_has_no_known_cause() -> None:
+    report = report_fall(fallen(**{"pelvis.x_m": lambda time: time, "pelvis.y_m": lambda time: -time}), MASS)
+    assert (report["cause"], report["time_s"]) == (UNKNOWN, END)
+    assert (report["x_m"], report["y_m"]) == (END, -END)
+    assert report["description"].startswith(
+        "fell at 10.00 s, pelvis at x 10.00 m, y -10.00 m; likely cause: unknown; no"
+    )
+
+
+def test_the_first_event_is_the_cause_and_the_others_follow() -> None:
+    both = {**EVENTS["push"], **slide(0.2, begin=8.5), "qp.failures_in_a_row": during(8.8, 9.0, FAILURES_IN_A_ROW)}
+    report = report_fall(fallen(**both), MASS)
+    assert [event.cause for event in events_before_fall(fallen(**both), MASS)] == ["push", "slip", "QP failure"]
+    assert report["cause"] == "push"
+    assert report["description"].count("; then ") == 2
+
+
+def test_what_happens_while_the_body_goes_down_or_long_before_does_not_count() -> None:
+    late = {"push.force_x_N": during(DOWN + 0.2, DOWN + 0.3, 900.0)}
+    early = {"push.force_x_N": during(DOWN - WINDOW - 1.0, DOWN - WINDOW - 0.9, 900.0)}
+    assert report_fall(fallen(**late), MASS)["cause"] == UNKNOWN
+    assert report_fall(fallen(**early), MASS)["cause"] == UNKNOWN
+
+
+@pytest.mark.parametrize(
+    "harmless",
+    [
+        {"push.force_x_N": during(8.0, 8.1, 50.0)},
+        slide(0.03),
+        {**slide(0.2), "right_foot.force_z_N": during(8.0, 8.2, 10.0)},
+        {**slide(0.2), "right_foot.friction_use": during(8.0, 8.2, 0.5)},
+        {"planner.phase": landing, "dcm.x_m": during(7.0, END, 0.2)},
+        {"dcm.x_m": during(8.0, 8.3, 0.5)},
+        {"qp.failures_in_a_row": during(8.0, 8.2, 1.0)},
+    ],
+    ids=[
+        "weak push",
+        "short slip",
+        "unloaded foot",
+        "rolling foot",
+        "foothold near",
+        "recovered in swing",
+        "one failure",
+    ],
+)
+def test_events_that_walkers_survive_do_not_count(harmless: Any) -> None:
+    assert events_before_fall(fallen(**harmless), MASS) == []
+
+
+@given(st.floats(-180.0, 180.0), st.sampled_from(tuple(BEARINGS)), st.floats(-40.0, 40.0))
+def test_the_side_of_a_push_is_that_of_the_body(heading: float, side: str, off: float) -> None:
+    away = np.radians(heading + BEARINGS[side] + off + 180.0)
+    w, x, y, z = Rotation.from_euler("z", heading, degrees=True).as_quat(scalar_first=True)
+    changes = {f"pelvis.quaternion_{axis}": constant(value) for axis, value in (("w", w), ("x", x), ("y", y), ("z", z))}
+    changes["push.force_x_N"] = during(8.0, 8.1, 600.0 * np.cos(away))
+    changes["push.force_y_N"] = during(8.0, 8.1, 600.0 * np.sin(away))
+    assert f"pushed with about 60 N s from {side} at 8.00 s" in report_fall(fallen(**changes), MASS)["description"]
+
+
+def test_the_strongest_push_is_named() -> None:
+    signals = fallen(**{"push.force_x_N": lambda time: during(7.0, 7.1, 300.0)(time) + during(8.0, 8.1, 900.0)(time)})
+    assert "pushed with about 90 N s from behind at 8.00 s" in report_fall(signals, MASS)["description"]
+
+
+def test_a_walker_without_planner_has_no_events_of_it() -> None:
+    signals = fallen(**EVENTS["push"])
+    own = [name for name in signals.column_names if not name.startswith(("dcm", "planner", "qp"))]
+    assert report_fall(signals.select(own), MASS)["cause"] == "push"
+
+
+def test_a_real_walker_that_is_knocked_over() -> None:
+    overrides = {"pushes.given": "[{time: 0.2, impulse: 200, direction: -1.5708}]", "duration": "3"}
+    outcome = simulate(load_scenario("stand", overrides))
+    fall = outcome.summary()["fall"]
+    assert outcome.end == "fell"
+    assert fall is not None
+    assert fall["cause"] == "push"
+    assert " from the left at 0.20 s; then in standing, " in fall["description"]
+    assert fall["time_s"] == pytest.approx(outcome.signals[TIME][-1].as_py())
+    # The push is to the right.
+    assert fall["y_m"] < -0.2
