@@ -9,7 +9,7 @@ import functools
 import math
 import typing
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -39,7 +39,7 @@ def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> No
 
     Args:
         kind: the dataclass.
-        data: the mapping, changed in place; a choice may stand in it as its tag.
+        data: the mapping; it is changed, its groups and lists are copied first. A choice may stand in it as its tag.
         field: `controller.balanced.planner.dcm_gain`, or with the index of a list's entry `pushes.given.0.direction`;
             the index after the last adds an entry.
         value: as YAML has it; it is copied.
@@ -64,8 +64,9 @@ def _group_in(group: Any, part: str, below: str, name: str, field: dataclasses.F
     found = group[key] if isinstance(group, list) else group.get(key)
     chosen = field is not None and "choices" in field.metadata
     if found is None or (chosen and found == below):
-        found = group[key] = _default_list(field) if below.isdecimal() else {}
+        found = _default_list(field) if below.isdecimal() else {}
     if isinstance(found, list) or (isinstance(found, dict) and not (chosen and next(iter(found), below) != below)):
+        group[key] = found = copy.copy(found)
         return found
     tag = next(iter(found)) if isinstance(found, dict) else found
     raise ParameterError(
@@ -158,7 +159,7 @@ class _Place:
     root: type[Any]
 
     def __truediv__(self, name: str) -> "_Place":
-        return replace(self, path=f"{self.path}.{name}" if self.path else name)
+        return _Place(f"{self.path}.{name}" if self.path else name, self.root)
 
     def __str__(self) -> str:
         return self.path

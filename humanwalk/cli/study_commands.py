@@ -52,12 +52,12 @@ def run(
 ) -> None:
     """Run a study: simulate its points on all cores, and write a row of the table as each ends. Resumes."""
     from humanwalk.run.monitor import caught_signals
-    from humanwalk.study.execute import require_valid, run_study
+    from humanwalk.study.execute import run_study
     from humanwalk.study.study import load_study
 
     loaded = load_study(study)
     with console.status(f"checking {len(loaded.points)} points"):
-        require_valid(loaded)
+        loaded.require_valid()
     with (
         caught_signals() as stopped,
         workers_client(workers, scheduler) as client,

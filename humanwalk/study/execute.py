@@ -2,13 +2,15 @@
 
 Guarantees of `run_jobs`: each job gives one row, in the order in which they finish. A worker that dies costs only the
 runs that it was at, which are repeated; a run whose worker dies again and again becomes a row that tells so, and so
-does a run that raises an exception. No more than a few futures for each worker are alive at a time, whatever the number
-of jobs. The process that holds the client decides alone which rows are written.
+does a run that raises an exception. The number of futures that are alive at a time does not grow with that of jobs.
+The process that holds the client decides alone which rows are written.
 """
 
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol
@@ -24,12 +26,16 @@ from humanwalk.study.table import RUNS, Journal, open_journal, read_table
 try:
     from dask.task_spec import Task
     from distributed import Client, Future
+    from distributed.protocol.pickle import dumps, loads
     from distributed.scheduler import KilledWorker
 except ImportError:
     raise missing_package("dask", "study") from None
 
 POLL_PERIOD = 0.2
 """Time between two looks at whether to stop [s]."""
+
+MIN_ROOM = 32
+"""Jobs that are at the cluster at a time, beyond four for each worker: short ones are handled in batches."""
 
 THREADS_PERIOD = 2.0
 """Time between two counts of the workers [s]: they may join and leave at any time."""
@@ -68,7 +74,8 @@ def run_jobs[J: Indexed](
         ParameterError: the scheduler is gone. Rows that were handed on are unaffected.
     """
     prefix = f"{function.__name__}-{uuid.uuid4().hex}"
-    waiting: dict[str, tuple[J, Future[Any]]] = {}
+    waiting: dict[str, J] = {}
+    futures: dict[str, Future[Any]] = {}
     finished: SimpleQueue[Future[Any]] = SimpleQueue()
     remaining = iter(jobs)
     room, counted = 0, -THREADS_PERIOD
@@ -76,25 +83,25 @@ def run_jobs[J: Indexed](
         while not should_stop():
             if time.monotonic() - counted >= THREADS_PERIOD:
                 room, counted = _room(client), time.monotonic()
-            batch = _take(remaining, room - len(waiting))
-            for job, future in _submit(client, function, batch, prefix):
-                waiting[str(future.key)] = (job, future)
-                future.add_done_callback(finished.put)
+            if len(waiting) <= room // 2:
+                batch = {f"{prefix}-{job.index}": job for job in islice(remaining, room - len(waiting))}
+                waiting |= batch
+                for future in _submit(client, function, batch):
+                    futures[str(future.key)] = future
+                    future.add_done_callback(finished.put)
             if not waiting:
                 return
-            try:
-                key = str(finished.get(timeout=POLL_PERIOD).key)
-            except Empty:
-                continue
-            job, future = waiting.pop(key)
-            row = _row_of(future)
-            # The scheduler forgets a result that nobody holds.
-            future.release()
-            on_row(job, row)
+            done = _taken(finished, POLL_PERIOD)
+            rows = _rows_of(client, done)
+            for future in done:
+                # The scheduler forgets a result that nobody holds.
+                futures.pop(str(future.key)).release()
+            for key, row in rows.items():
+                on_row(waiting.pop(key), row)
     except (OSError, TimeoutError) as error:
         raise _lost(client, error) from None
     finally:
-        for _, future in waiting.values():
+        for future in futures.values():
             future.release()
 
 
@@ -108,33 +115,44 @@ def _room(client: Client) -> int:
     if client.status != "running":
         raise OSError("the connection is closed")
     threads: dict[str, int] = client.nthreads()
-    return 2 * sum(threads.values()) + 2
+    return 4 * sum(threads.values()) + MIN_ROOM
 
 
-def _take[J](jobs: Iterator[J], number: int) -> list[J]:
-    return [job for _, job in zip(range(number), jobs, strict=False)]
-
-
-def _submit[J: Indexed](
-    client: Client, function: Callable[[J], Row], jobs: list[J], prefix: str
-) -> list[tuple[J, Future[Any]]]:
-    if not jobs:
-        return []
-    keys = [f"{prefix}-{job.index}" for job in jobs]
+def _submit[J](client: Client, function: Callable[[J], Row], jobs: Mapping[str, J]) -> list[Future[Any]]:
+    """Futures of jobs by key."""
     # As data producers, tasks wait at the scheduler and not at a worker, where the death of the worker would count
-    # against them; see worker-saturation in Dask's documentation.
-    graph = {key: Task(key, function, job, _data_producer=True) for key, job in zip(keys, jobs, strict=True)}
-    futures = client.get(graph, keys, sync=False)
-    return list(zip(jobs, futures, strict=True))
+    # against them; see worker-saturation in Dask's documentation. Dask hashes what it is given: bytes are quick.
+    graph = {key: Task(key, _apply, function, dumps(job), _data_producer=True) for key, job in jobs.items()}
+    futures: list[Future[Any]] = client.get(graph, list(graph), sync=False) if graph else []
+    return futures
 
 
-def _row_of(future: Future[Any]) -> Row:
-    if future.status in ("cancelled", "lost"):
+def _apply(function: Callable[[Any], Row], job: bytes) -> Row:
+    return function(loads(job))
+
+
+def _taken(queue: SimpleQueue[Future[Any]], timeout: float) -> list[Future[Any]]:
+    """What a queue holds; if it is empty, what comes first within `timeout` [s]."""
+    taken = []
+    with suppress(Empty):
+        taken.append(queue.get(timeout=timeout))
+        while True:
+            taken.append(queue.get_nowait())
+    return taken
+
+
+def _rows_of(client: Client, futures: list[Future[Any]]) -> dict[str, Row]:
+    """Rows by key of futures that are done."""
+    if any(future.status in ("cancelled", "lost") for future in futures):
         raise OSError("the connection was lost")
-    error = future.exception()
-    if error is None:
-        row: Row = future.result()
-        return row
+    good = [future for future in futures if future.status != "error"]
+    rows = dict(zip((str(future.key) for future in good), client.gather(good), strict=True)) if good else {}
+    return {
+        str(future.key): rows[str(future.key)] if future in good else _failure(future.exception()) for future in futures
+    }
+
+
+def _failure(error: BaseException) -> Row:
     if isinstance(error, KilledWorker):
         return failed(f"killed its worker {error.allowed_failures + 1} times")
     if isinstance(error, ParameterError):
@@ -172,7 +190,7 @@ def run_study(
         ParameterError: a point or the folder cannot be used, or the scheduler is gone; finished rows are kept.
     """
     folder = Path(folder)
-    require_valid(study)
+    study.require_valid()
     with open_journal(folder, study) as journal:
 
         def add(job: Job, row: Row) -> None:
@@ -184,12 +202,6 @@ def run_study(
         finally:
             journal.finish()
     return read_table(folder)
-
-
-def require_valid(study: Study) -> None:
-    """Raise ParameterError for the first point whose scenario cannot be used."""
-    for _ in study.scenarios():
-        pass
 
 
 def list_jobs(study: Study, journal: Journal) -> Iterator[Job]:

@@ -12,9 +12,8 @@
 fields of the scenario as with `--set`; entries of lists are named by their index: `pushes.given.0.direction`.
 """
 
-import copy
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
@@ -103,7 +102,7 @@ class Study:
             ParameterError: a value that cannot be used; the message begins with the point.
         """
         try:
-            data = copy.deepcopy(self.base)
+            data = dict(self.base)
             for name, value in self.overrides(point).items():
                 replace_value(Scenario, data, name, value)
             return build(Scenario, data)
@@ -111,9 +110,15 @@ class Study:
             at = ", ".join(f"{name}: {shown(value)}" for name, value in point.items())
             raise ParameterError(f"point ({printable(at, 300)}): {error}") from None
 
-    def scenarios(self) -> Iterator[Scenario]:
-        """The scenarios of all points in order; see `scenario_at`."""
-        return map(self.scenario_at, self.points)
+    def require_valid(self) -> None:
+        """Raise ParameterError for the first point whose scenario cannot be used; see `scenario_at`."""
+        assert self._valid
+
+    @cached_property
+    def _valid(self) -> bool:
+        for point in self.points:
+            self.scenario_at(point)
+        return True
 
 
 _FIELD = Values((None,))

@@ -45,13 +45,13 @@ def test_scenario_at_a_point_is_the_one_with_the_same_overrides() -> None:
 
 def test_points_do_not_change_each_other() -> None:
     study = parse_study(EVERYTHING)
-    first = list(study.scenarios())
+    first = [study.scenario_at(point) for point in study.points]
     assert list(reversed([study.scenario_at(point) for point in reversed(study.points)])) == first
     assert study.scenario == load_scenario("push")
 
 
 def test_empty_study_is_one_run() -> None:
-    assert list(Study().scenarios()) == [Study().scenario]
+    assert [Study().scenario_at(point) for point in Study().points] == [Study().scenario]
 
 
 def test_base_scenario_is_a_name_a_file_or_fields(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_paths_of_a_study_count_from_its_folder(tmp_path: Path, monkeypatch: pyt
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
     study = load_study(tmp_path / "study.yaml")
-    assert [scenario.duration for scenario in study.scenarios()] == [1.0, 2.0]
+    assert [study.scenario_at(point).duration for point in study.points] == [1.0, 2.0]
     assert load_study("../study.yaml") == study
 
 
@@ -121,7 +121,7 @@ def test_files_that_are_no_study_are_refused_in_one_line(text: str, match: str) 
 def test_points_that_cannot_be_simulated_are_refused_with_their_values(text: str, match: str) -> None:
     study = parse_study(text)
     with pytest.raises(ParameterError, match=match) as raised:
-        list(study.scenarios())
+        study.require_valid()
     assert str(raised.value).isprintable()
 
 
@@ -132,4 +132,4 @@ def test_unknown_study_is_refused() -> None:
 
 def test_shipped_studies_are_valid() -> None:
     for name in shipped_studies():
-        assert len(list(load_study(name).scenarios())) == len(load_study(name).points)
+        load_study(name).require_valid()
