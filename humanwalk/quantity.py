@@ -111,7 +111,7 @@ def check(parameters: Any, path: str = "") -> None:
     Raises:
         ParameterError: A number is out of its range.
     """
-    for name, value, metadata in _numbers(parameters, path):
+    for name, value, metadata in numbers_of(parameters, path):
         require_in_range(name, value, metadata["unit"], metadata["low"], metadata["high"])
 
 
@@ -133,7 +133,8 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
     return f"the nearest allowed value is {nearest:g}"
 
 
-def _numbers(parameters: Any, path: str) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+    """Dotted name, value and metadata (unit, low, high) of every quantity in a tree of dataclasses; see `check`."""
     for field in dataclasses.fields(parameters):
         value = getattr(parameters, field.name)
         name = f"{path}.{field.name}" if path else field.name
@@ -141,11 +142,11 @@ def _numbers(parameters: Any, path: str) -> Iterator[tuple[str, float, Mapping[s
             yield name, value, field.metadata
         elif dataclasses.is_dataclass(value):
             choices = field.metadata.get("choices")
-            yield from _numbers(value, f"{name}.{tag_of(choices, value)}" if choices else name)
+            yield from numbers_of(value, f"{name}.{tag_of(choices, value)}" if choices else name)
         else:
             items = (
                 value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, tuple) else ()
             )
             for key, item in items:
                 if dataclasses.is_dataclass(item):
-                    yield from _numbers(item, f"{name}.{key}")
+                    yield from numbers_of(item, f"{name}.{key}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress
+from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
 from humanwalk.quantity import ParameterError
 
 if TYPE_CHECKING:
@@ -76,6 +76,35 @@ def run(
     if table.num_rows < len(loaded.points):
         console.print("interrupted; the same command resumes")
         raise typer.Exit(INTERRUPTED)
+
+
+@study_app.command(
+    epilog="Examples: humanwalk study show studies/steps  |  "
+    "humanwalk study show studies/steps --measure cost_of_transport --measure gait.cadence"
+)
+def show(
+    study: Annotated[Path, typer.Argument(help="Folder of a study, finished or not.")],
+    measure: Annotated[
+        list[str],
+        typer.Option(metavar="NAME", help="Column of the table to show instead of the usual ones; several times."),
+    ] = [],  # noqa: B006
+    figures: Annotated[
+        str | None, typer.Option(metavar="FORMAT", help="Also write the figures into its plots: png, svg or pdf.")
+    ] = None,
+) -> None:
+    """Print survival, means and effects of the factors, and write study.html with figures into the study's folder."""
+    from humanwalk.study.page import terminal_tables, write_study_figures, write_study_page
+    from humanwalk.study.results import Results
+
+    results = Results.read(study)
+    measures = results.measures(measure)
+    for table in terminal_tables(results, measures):
+        stdout.print(table)
+    with console.status("drawing"):
+        written = write_study_figures(study, results, measures, figures) if figures else []
+        written.append(write_study_page(study, results, measures))
+    for path in written:
+        console.print(f"{path}", soft_wrap=True)
 
 
 @contextmanager

@@ -12,14 +12,25 @@ from humanwalk.quantity import ParameterError
 
 TIME = "time_s"
 
-UNITS = {"N_m": "N m", "rad_s": "rad/s", "m_s": "m/s", "rad": "rad", "m": "m", "N": "N", "s": "s"}
-"""Units by how a column's name ends."""
-_UNIT = re.compile(f"_({'|'.join(UNITS)})$")
+UNITS = {
+    "N_m": "N m",
+    "rad_s": "rad/s",
+    "m_s": "m/s",
+    "1_min": "1/min",
+    "rad": "rad",
+    "deg": "deg",
+    "m": "m",
+    "N": "N",
+    "s": "s",
+    "J": "J",
+}
+"""Units by how the name of a signal or measure ends."""
+UNIT = re.compile(f"_({'|'.join(UNITS)})$")
 
 
 def unit_of(column: str) -> str:
     """Unit of a column, "" for a pure number: "N m" of RightLegTibiaMotion.torque_N_m."""
-    found = _UNIT.search(column)
+    found = UNIT.search(column)
     return UNITS[found[1]] if found else ""
 
 
@@ -32,7 +43,7 @@ def column_of(columns: Sequence[str], name: str) -> str:
     if name in columns:
         return name
     for column in columns:
-        if _UNIT.sub("", column) == name:
+        if UNIT.sub("", column) == name:
             return column
     near = difflib.get_close_matches(name, columns, n=3, cutoff=0.5)
     raise ParameterError(f"{name}: no such signal; allowed: the {len(columns)} of the run; near: {', '.join(near)}")

@@ -1,0 +1,184 @@
+"""The finished rows of a study by what they are: factors that vary, survival, measures with units."""
+
+import difflib
+import json
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from humanwalk.measures.signals import UNIT, unit_of
+from humanwalk.numerics import Array, Mask
+from humanwalk.quantity import ParameterError, numbers_of, printable
+from humanwalk.study.row import run_columns
+from humanwalk.study.statistics import is_numeric
+from humanwalk.study.study import Study
+from humanwalk.study.table import ROW, read_study, read_table
+
+SEED = "seed"
+"""The factor whose levels are repetitions."""
+
+USUAL_MEASURES = (
+    "mean_speed_m_s",
+    "path_deviation_m",
+    "cost_of_transport",
+    "support_force_rms_N",
+    "support_torque_rms_N_m",
+)
+"""What is shown of a study that does not name measures."""
+
+SURVIVAL = "survived"
+"""The measure that every row has."""
+
+MAX_ENDS = 12
+
+AS_IN_SCENARIO = "as in the scenario"
+"""Level of a row that has no variant."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """The rows of a study.
+
+    Attributes:
+        name: of the study.
+        study: what was simulated.
+        table: the finished rows in the order of the points, at least one.
+    """
+
+    name: str
+    study: Study
+    table: pa.Table
+
+    @staticmethod
+    def read(folder: Path) -> "Results":
+        """The results in the folder of a study.
+
+        Raises:
+            ParameterError: the folder holds no study, its table was changed, or no run has finished.
+        """
+        study, table = read_study(folder), read_table(folder)
+        if not table.num_rows:
+            raise ParameterError(f"{printable(folder)}: no run has finished; allowed: one or more; run the study first")
+        return Results(printable(folder.resolve().name), study, table)
+
+    @cached_property
+    def factors(self) -> dict[str, list[Any]]:
+        """Values of every factor that varies, one a row, by name.
+
+        The seed only repeats and is left out, as are numbers that rise or fall with those of another factor in every
+        row: their effects cannot be told apart.
+        """
+        return {name: self._varying[name] for name in self._varying if name not in self._followers}
+
+    @cached_property
+    def _varying(self) -> dict[str, list[Any]]:
+        points = [self.study.points[row] for row in self.table[ROW].to_pylist()]
+        columns = {
+            name: [_level(self.study.value_at(point, name)) for point in points]
+            for name in self.study.columns
+            if name != SEED
+        }
+        return {name: values for name, values in columns.items() if len(set(values)) > 1}
+
+    @cached_property
+    def _followers(self) -> dict[str, str]:
+        """The factor of which each factor that is left out is a monotonic function."""
+        numbers = {name: values for name, values in self._varying.items() if is_numeric(values)}
+        pairs = ((name, other) for other, name in combinations(numbers, 2))
+        return {name: other for name, other in pairs if _monotonic(numbers[name], numbers[other])}
+
+    @cached_property
+    def survived(self) -> Mask:
+        """Whether each row completed its duration."""
+        return np.array(self.table[SURVIVAL].to_pylist(), dtype=bool)
+
+    def measure(self, name: str) -> Array:
+        """A measure of the rows that survived, not a number where a row does not have it; or SURVIVAL of all [%]."""
+        if name == SURVIVAL:
+            return np.where(self.survived, 100.0, 0.0)
+        values = np.array([np.nan if value is None else value for value in self.table[name].to_pylist()], dtype=float)
+        return np.where(self.survived, values, np.nan)
+
+    def measures(self, names: Sequence[str] = ()) -> list[str]:
+        """Columns of measures by name, with or without unit; without names the usual ones that vary.
+
+        Raises:
+            ParameterError: there is no such measure.
+        """
+        return [self._measure_of(name) for name in names] or [name for name in USUAL_MEASURES if self.varies(name)]
+
+    def _measure_of(self, name: str) -> str:
+        columns = [column for column, kind in run_columns().items() if kind is not str]
+        for column in columns:
+            if name in (column, _without_units(column)):
+                return column
+        near = difflib.get_close_matches(name, columns, n=3, cutoff=0.4)
+        raise ParameterError(
+            f"--measure {printable(name)}: no such measure; allowed: the columns of table.csv; near: {', '.join(near)}"
+        )
+
+    def varies(self, name: str) -> bool:
+        """Whether a measure differs between rows by more than rounding."""
+        values = self.measure(name)
+        values = values[np.isfinite(values)]
+        return bool(values.size and np.ptp(values) > 1e-9 * np.abs(values).max())
+
+    @cached_property
+    def _units(self) -> dict[str, str]:
+        point = self.study.points[0]
+        return {name: metadata["unit"] for name, _, metadata in numbers_of(self.study.scenario_at(point))}
+
+    def label(self, name: str) -> str:
+        """A factor or measure with its unit: "forward [m/s]", "peak torque, LeftLegTibiaMotion [N m]"."""
+        if name == SURVIVAL:
+            return "survived [%]"
+        if name in self.study.columns:
+            text, unit = _shortest(name, list(self.study.columns)), self._units.get(name, "")
+        else:
+            text, unit = _without_units(name), next(filter(None, map(unit_of, name.split("."))), "")
+            text = text.removeprefix("gait.").replace(".", ", ")
+        text = printable(text.replace("_", " "), 60)
+        text += f" [{unit}]" if unit else ""
+        followers = [self.label(follower) for follower, leader in self._followers.items() if leader == name]
+        return f"{text} with {', '.join(followers)}" if followers else text
+
+    @cached_property
+    def ends(self) -> dict[str, int]:
+        """Number of rows by how they ended, the most frequent first, at most MAX_ENDS."""
+        return dict(Counter(printable(end) for end in self.table["end"].to_pylist()).most_common(MAX_ENDS))
+
+
+def _monotonic(values: Sequence[float], others: Sequence[float]) -> bool:
+    """Whether values are a strictly monotonic function of others, and the reverse."""
+    ranks, other_ranks = (np.unique(numbers, return_inverse=True)[1] for numbers in (values, others))
+    return np.array_equal(ranks, other_ranks) or np.array_equal(ranks, other_ranks.max() - other_ranks)
+
+
+def _level(value: Any) -> Any:
+    """A value of a factor as a number or text."""
+    if value is None:
+        return AS_IN_SCENARIO
+    return value if is_numeric([value]) else printable(value if isinstance(value, str) else json.dumps(value), 60)
+
+
+def _without_units(name: str) -> str:
+    return ".".join(UNIT.sub("", part) for part in name.split("."))
+
+
+def _shortest(name: str, names: Sequence[str]) -> str:
+    """The shortest end of a dotted name, without indices, that no other name has."""
+    parts = [part for part in name.split(".") if not part.isdecimal()]
+    others = [re.sub(r"\.\d+(?=\.|$)", "", other) for other in names if other != name]
+    for first in range(len(parts) - 1, 0, -1):
+        end = ".".join(parts[first:])
+        if not any(f".{other}".endswith(f".{end}") for other in others):
+            return end
+    return name

@@ -1,0 +1,99 @@
+"""The studies that come with humanwalk can be simulated, and are what their descriptions and docs/balance.md state."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from humanwalk.cli.main import app
+from humanwalk.scenario import load_scenario
+from humanwalk.study.design import Rows
+from humanwalk.study.page import PAGE
+from humanwalk.study.row import Job, simulate_row
+from humanwalk.study.study import Study, load_study, shipped_studies
+from humanwalk.study.table import open_journal
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
+    study = load_study(name)
+    study.require_valid()
+    assert study.description
+    assert len(study.points) > 1
+
+
+@pytest.mark.parametrize(
+    ("name", "number"),
+    [
+        ("balance_speeds", 5),
+        ("balance_seeds", 40),
+        ("balance_paths", 6),
+        ("balance_bodies", 8),
+        ("balance_pushes", 40),
+        ("balance_pushes_60", 10),
+        ("balance_invariance", 4),
+        ("push_random", 100),
+        ("thesis_step_height", 9),
+    ],
+)
+def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
+    assert len(load_study(name).points) == number
+
+
+def test_paths_are_those_of_the_shipped_scenarios() -> None:
+    study = load_study("balance_paths")
+    for point in study.points:
+        shipped = load_scenario(point["path"])
+        assert study.scenario_at(point) == replace(shipped, description=study.scenario.description)
+
+
+def test_pushes_leave_time_to_fall() -> None:
+    for name in ("balance_pushes", "balance_pushes_60", "push_random"):
+        for scenario in load_study(name).scenarios():
+            (push,) = scenario.pushes.given
+            assert push.time >= scenario.controller.steady_from(scenario.subject)
+            assert scenario.duration >= push.time + 4.0
+            assert push.duration == 0.1
+
+
+def test_random_pushes_have_every_direction_and_time_of_a_stride() -> None:
+    points = load_study("push_random").points
+    for name, low, high in (("time", 8.0, 9.04), ("direction", -math.pi, math.pi)):
+        values = [point[f"pushes.given.0.{name}"] for point in points]
+        assert sorted(int(100 * (value - low) / (high - low)) for value in values) == list(range(100))
+
+
+@pytest.fixture
+def short_study(tmp_path: Path) -> Study:
+    """The first points of the shipped study of step heights, 0.05 s long."""
+    study = load_study("thesis_step_height")
+    assert isinstance(study.design, Rows)
+    lines = Path(study.design.file).read_text().splitlines()[:3]
+    file = tmp_path / "two.csv"
+    file.write_text("\n".join(lines))
+    return replace(study, set={"duration": 0.05}, design=Rows(str(file)))
+
+
+def test_a_study_is_simulated_and_shown(short_study: Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    with open_journal(folder, short_study) as journal:
+        for index, scenario in enumerate(short_study.scenarios()):
+            journal.append(index, simulate_row(Job(index, scenario)))
+    result: Any = CliRunner().invoke(app, ["study", "show", str(folder), "--measure", "duration"])
+    assert result.exit_code == 0, result.output
+    assert "1 of 1     100 %   20.7 to 100.0 %" in result.stdout
+    assert "step height [m] with" in result.stdout
+    assert "duration [s]" in result.stdout
+    assert (folder / PAGE).is_file()
+    assert str(folder / PAGE) in result.stderr
+
+
+def test_a_study_without_a_finished_run_is_not_shown(short_study: Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    with open_journal(folder, short_study):
+        pass
+    result: Any = CliRunner().invoke(app, ["study", "show", str(folder)])
+    assert "no run has finished; allowed: one or more; run the study first" in str(result.exception)
