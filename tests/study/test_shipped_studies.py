@@ -52,7 +52,8 @@ def test_paths_are_those_of_the_shipped_scenarios() -> None:
 
 def test_pushes_leave_time_to_fall() -> None:
     for name in ("balance_pushes", "balance_pushes_60", "push_random"):
-        for scenario in load_study(name).scenarios():
+        study = load_study(name)
+        for scenario in map(study.scenario_at, study.points):
             (push,) = scenario.pushes.given
             assert push.time >= scenario.controller.steady_from(scenario.subject)
             assert scenario.duration >= push.time + 4.0
@@ -80,7 +81,7 @@ def short_study(tmp_path: Path) -> Study:
 def test_a_study_is_simulated_and_shown(short_study: Study, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     with open_journal(folder, short_study) as journal:
-        for index, scenario in enumerate(short_study.scenarios()):
+        for index, scenario in enumerate(map(short_study.scenario_at, short_study.points)):
             journal.append(index, simulate_row(Job(index, scenario)))
     result: Any = CliRunner().invoke(app, ["study", "show", str(folder), "--measure", "duration"])
     assert result.exit_code == 0, result.output
