@@ -64,38 +64,34 @@ def run(
 
 @tune_app.command(epilog="Example: humanwalk tune show tunings/cheap")
 def show(folder: Annotated[Path, typer.Argument(help="Folder of a tuning, finished or not.")]) -> None:
-    """Print the best trial and write it as a scenario, best.yaml, for humanwalk walk."""
+    """Print the best trial, write it as a scenario, best.yaml, and write a page with the history of the search."""
     from rich.table import Table
 
     from humanwalk.study.trials import best, read_trials, write_best
-    from humanwalk.study.tuning import start_values
+    from humanwalk.study.tuning_page import parameter_rows, value_rows, write_tuning_page
 
     tuning, rows = read_trials(folder)
     found = best(tuning, rows)
-    if found is None:
-        stdout.print(f"{folder}: no trial has walked yet")
-        return
-    parameters = Table("parameter", "low", "start", "best", "high")
-    for name, start in start_values(tuning).items():
-        limits = tuning.parameters[name]
-        cells = (limits.low, start, found[f"parameters.{name}"], limits.high)
-        parameters.add_row(name, *(f"{value:g}" for value in cells))
-    stdout.print(parameters)
-    values = Table("measure", "start", "best")
-    for name in tuning.measured:
-        values.add_row(name, *(shown_number(row[f"values.{name}"]) for row in (rows[0], found)))
-    stdout.print(values)
-    path = write_best(folder, tuning, found)
-    console.print(f"{folder}: {len(rows)} of {tuning.trials} trials; {describe(tuning, found)}", soft_wrap=True)
-    console.print(f"walk it: humanwalk walk {path}", soft_wrap=True)
+    if found is not None:
+        parameters = Table("parameter", "low", "start", "best", "high")
+        for cells in parameter_rows(tuning, found):
+            parameters.add_row(*cells)
+        values = Table("measure", "start", "best", "goal")
+        for cells in value_rows(tuning, rows[0], found):
+            values.add_row(*cells)
+        stdout.print(parameters)
+        stdout.print(values)
+    with console.status("drawing"):
+        page = write_tuning_page(folder, tuning, rows)
+    state = describe(tuning, found) if found else "no trial has walked yet"
+    console.print(f"{folder}: {len(rows)} of {tuning.trials} trials; {state}; {page.name}", soft_wrap=True)
+    if found is not None:
+        console.print(f"walk it: humanwalk walk {write_best(folder, tuning, found)}", soft_wrap=True)
 
 
 def describe(tuning: Any, row: Mapping[str, Any]) -> str:
     """A trial on one line."""
-    values = ", ".join(f"{name} {shown_number(row[f'values.{name}'])}" for name in tuning.measured)
+    from humanwalk.study.trials import number
+
+    values = ", ".join(f"{name} {number(row[f'values.{name}'])}" for name in tuning.measured)
     return f"trial {row['trial']}, {values}" + ("" if row["feasible"] else " (a bound does not hold)")
-
-
-def shown_number(value: float | None) -> str:
-    """Four digits; a dash for a value that a trial does not have."""
-    return "-" if value is None else f"{value:.4g}"

@@ -75,6 +75,12 @@ class Bound(Measured):
     penalty: float = quantity(10.0, "", 0.0, 1e9)
     """Cost per unit of the measure beyond a limit."""
 
+    @property
+    def allowed(self) -> str:
+        """The allowed range as text."""
+        low, high = (f"{limit:g}" if abs(limit) < NO_LIMIT else "" for limit in (self.low, self.high))
+        return f"{low} to {high}" if low and high else f"from {low}" if low else f"up to {high}" if high else "any"
+
     def violation(self, value: float) -> float:
         """Distance from the allowed range; 0 within."""
         return max(self.low - value, value - self.high, 0.0)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import optuna
 
 from humanwalk.study.objectives import Score
+from humanwalk.study.tuning import Range
 
 LOW, HIGH = -1.0, 1.0
 """Range of every coordinate of a search; 0 is the start."""
@@ -68,7 +69,9 @@ def search(
     directions = [optuna.study.StudyDirection.MINIMIZE] * (losses if chosen.several else 1)
     study = optuna.create_study(directions=directions, sampler=chosen.make(seed, population))
     study.enqueue_trial(dict.fromkeys(coordinates, 0.0))
-    space = _space(coordinates)
+    space: dict[str, optuna.distributions.BaseDistribution] = {
+        name: optuna.distributions.FloatDistribution(LOW, HIGH) for name in coordinates
+    }
     for size in _batch_sizes(trials, population):
         batch = [study.ask(space) for _ in range(size)]
         asked = [(trial.number, trial.params) for trial in batch if trial.number < trials]
@@ -82,10 +85,6 @@ def search(
             study.tell(trial, score.losses if chosen.several else score.cost)
 
 
-def _space(coordinates: Sequence[str]) -> dict[str, optuna.distributions.BaseDistribution]:
-    return {name: optuna.distributions.FloatDistribution(LOW, HIGH) for name in coordinates}
-
-
 def _batch_sizes(trials: int, population: int) -> Iterator[int]:
     """1, then whole populations, the last of which may exceed the number of trials."""
     yield 1
@@ -93,18 +92,23 @@ def _batch_sizes(trials: int, population: int) -> Iterator[int]:
         yield population
 
 
-def importance(trials: Sequence[tuple[Mapping[str, float], float]]) -> dict[str, float]:
-    """Importance of every coordinate for a low number, by PED-ANOVA, in decreasing order; the sum is 1.
+def importance(
+    parameters: Mapping[str, Range], trials: Sequence[tuple[Mapping[str, float], float]]
+) -> dict[str, float]:
+    """Importance of every parameter for a low number, by PED-ANOVA, in decreasing order; the sum is 1.
 
     Watanabe, Bansal and Hutter (2023), IJCAI, 4389-4396.
 
     Args:
-        trials: coordinates and the number of every trial, at least two.
+        parameters: ranges by name.
+        trials: values of the parameters and the number of every trial, at least two.
     """
     optuna.logging.set_verbosity(logging.ERROR)
     study = optuna.create_study(direction="minimize")
-    for coordinates, value in trials:
-        trial = optuna.create_trial(params=dict(coordinates), distributions=_space([*coordinates]), value=value)
-        study.add_trial(trial)
-    evaluator = optuna.importance.PedAnovaImportanceEvaluator()
-    return optuna.importance.get_param_importances(study, evaluator=evaluator)
+    space: dict[str, optuna.distributions.BaseDistribution] = {
+        name: optuna.distributions.FloatDistribution(limits.low, limits.high, log=limits.log)
+        for name, limits in parameters.items()
+    }
+    for values, number in trials:
+        study.add_trial(optuna.create_trial(params=dict(values), distributions=space, value=number))
+    return optuna.importance.get_param_importances(study, evaluator=optuna.importance.PedAnovaImportanceEvaluator())

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from humanwalk.files import WRITABLE, file_errors, locked, make_folder, require_inside, write_text
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.scenario import dump_scenario
@@ -153,13 +155,36 @@ def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:
     return tuning, table.to_pylist()
 
 
+def walked(tuning: Tuning, row: Row) -> bool:
+    """Whether a trial has a value for every objective and bound."""
+    return all(row[f"values.{name}"] is not None for name in tuning.measured)
+
+
 def best(tuning: Tuning, rows: Sequence[Row]) -> Row | None:
     """The trial of least cost of those within all bounds, else of those that walk; None if no trial walks.
 
     With several objectives of nsga2 it is one point of the Pareto front, chosen by the weights.
     """
-    walking = [row for row in rows if not score_of(tuning, row).violations["unfinished"]]
+    walking = [row for row in rows if walked(tuning, row)]
     return min(walking, key=lambda row: (not row["feasible"], row["cost"], row[TRIAL]), default=None)
+
+
+def pareto_front(tuning: Tuning, rows: Sequence[Row]) -> list[Row]:
+    """The trials within all bounds of which no other one is better in an objective and in none worse, in order;
+    of equal ones the first.
+    """
+    feasible = [row for row in rows if row["feasible"]]
+    losses = np.array([score_of(tuning, row).losses for row in feasible]).reshape(-1, len(tuning.objectives))
+    front: dict[tuple[float, ...], Row] = {}
+    for row, own in zip(feasible, losses, strict=True):
+        if not ((losses <= own).all(axis=1) & (losses < own).any(axis=1)).any():
+            front.setdefault(tuple(own), row)
+    return list(front.values())
+
+
+def number(value: float | None) -> str:
+    """Four digits; a dash for a value that a trial does not have."""
+    return "-" if value is None else f"{value:.4g}"
 
 
 def write_best(folder: Path, tuning: Tuning, row: Row) -> Path:

@@ -6,6 +6,7 @@ import pytest
 
 from humanwalk.study.objectives import Score
 from humanwalk.study.search import HIGH, LOW, SAMPLERS, Asked, importance, search
+from humanwalk.study.tuning import Range
 
 NAMES = ("x", "y", "z")
 OPTIMUM = 0.4
@@ -62,6 +63,6 @@ def test_nsga2_finds_points_between_both_optima_within_the_constraint() -> None:
 
 def test_the_parameter_that_decides_is_the_most_important() -> None:
     trials = [(at, at["y"] ** 2 + 0.01 * at["x"]) for (_, at), _ in searched("nsga2", 100, population=100)]
-    shares = importance(trials)
+    shares = importance(dict.fromkeys(NAMES, Range(LOW, HIGH)), trials)
     assert next(iter(shares)) == "y"
     assert sum(shares.values()) == pytest.approx(1.0)
