@@ -8,7 +8,8 @@ import dataclasses
 import functools
 import math
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -16,7 +17,7 @@ from typing import Any, Literal
 
 from humanwalk.files import read_text
 from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, tag_of
-from humanwalk.yaml_text import read_yaml, shown, yaml_text
+from humanwalk.yaml_text import line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
@@ -92,17 +93,35 @@ def _index(entries: list[Any], part: str, name: str) -> int:
     return int(part)
 
 
+@contextmanager
+def located(text: str, name: str, replaced: Collection[str] = ()) -> Iterator[None]:
+    """Within the block, an error about a field of a YAML file begins with the file's name and the field's line.
+
+    Args:
+        text: the file's text.
+        name: its name.
+        replaced: dotted names of fields whose values do not come from the file.
+    """
+    try:
+        yield
+    except ParameterError as error:
+        field = str(error).partition(":")[0]
+        line = None if any(f"{field}.".startswith(f"{other}.") for other in replaced) else line_of(text, field)
+        if line is None:
+            raise
+        raise ParameterError(f"{name}, line {line}: {error}") from None
+
+
 def load_as[T](kind: type[T], path: Path) -> T:
     """A YAML file as an instance of a dataclass of parameters.
 
     Raises:
         ParameterError: it cannot be read, or a value cannot be used.
     """
-    data = read_yaml(read_text(path, MAX_FILE_SIZE), path.name)
-    try:
+    text = read_text(path, MAX_FILE_SIZE)
+    data = read_yaml(text, path.name)
+    with located(text, str(path)):
         return build(kind, data)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from None
 
 
 def build[T](kind: type[T], data: Mapping[str, Any]) -> T:

@@ -115,12 +115,17 @@ def check(parameters: Any, path: str = "") -> None:
         require_in_range(name, value, metadata["unit"], metadata["low"], metadata["high"])
 
 
-def require_in_range(name: str, value: float, unit: str, low: float, high: float) -> None:
-    """Raise ParameterError unless low <= value <= high; the message suggests a fix, such as another unit."""
+def require_in_range(name: str, value: float, unit: str, low: float, high: float, *, other_units: bool = True) -> None:
+    """Raise ParameterError unless low <= value <= high.
+
+    The message suggests a fix; with `other_units` that may be a value in the unit that it was probably meant in.
+    """
     if math.isfinite(value) and low <= value <= high:
         return
     allowed = f"allowed: {low:g} to {high:g} {unit}".rstrip()
-    raise ParameterError(f"{name}: {value:g} is out of range; {allowed}; {_fix(value, unit, low, high)}")
+    raise ParameterError(
+        f"{name}: {value:g} is out of range; {allowed}; {_fix(value, unit if other_units else '', low, high)}"
+    )
 
 
 def _fix(value: float, unit: str, low: float, high: float) -> str:

@@ -30,7 +30,7 @@ from humanwalk.choices import (
 )
 from humanwalk.choices.start import StartParameters
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, override
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, override
 from humanwalk.quantity import ParameterError, choice, did_you_mean, quantity
 from humanwalk.terrain import TERRAINS, Plane, Terrain
 from humanwalk.walking.push import PushParameters
@@ -160,7 +160,8 @@ def parse_scenario(
     anchor_paths(Scenario, data, folder)
     for field, value in (overrides or {}).items():
         override(Scenario, data, field, value)
-    return build(Scenario, data)
+    with located(text, name, overrides or ()):
+        return build(Scenario, data)
 
 
 def dump_scenario(scenario: Scenario) -> str:

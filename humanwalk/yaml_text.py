@@ -73,6 +73,31 @@ def read_yaml(text: str, name: str) -> dict[str, Any]:
     return {key: value for key, value in data.items() if not str(key).startswith("_")}
 
 
+def line_of(text: str, field: str) -> int | None:
+    """Line of YAML text, from 1, that names a field by its dotted name, else the last of its groups that is named.
+
+    Args:
+        text: YAML that `read_yaml` reads.
+        field: `controller.balanced.command.points.0.forward`; lists by index.
+    """
+    node, line = yaml.compose(text, Loader=_Loader), None
+    for part in field.split("."):
+        below = _entry(node, part)
+        if below is None:
+            return line
+        node, line = below[0], below[1] + 1
+    return line
+
+
+def _entry(node: yaml.Node | None, part: str) -> tuple[yaml.Node, int] | None:
+    """Node of an entry of a mapping or list, and its line from 0; None if there is none."""
+    if isinstance(node, yaml.MappingNode):
+        return next(((value, key.start_mark.line) for key, value in node.value if key.value == part), None)
+    if isinstance(node, yaml.SequenceNode) and part.isdecimal() and int(part) < len(node.value):
+        return node.value[int(part)], node.value[int(part)].start_mark.line
+    return None
+
+
 def _require_sound(root: yaml.Node | None, name: str) -> None:
     """Raise ParameterError where a mapping has a key twice, or a file stands for too many values."""
     sizes: dict[int, int] = {}

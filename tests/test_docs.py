@@ -37,6 +37,14 @@ def test_the_scenarios_of_a_how_to_are_valid(page: Any) -> None:
         parse_scenario(text)
 
 
+def test_the_search_of_the_book_works_from_the_disk_without_a_network() -> None:
+    """The plugin inlines the index; the script that replaces a web worker is ours, not another host's."""
+    settings = (DOCS.parent / "mkdocs.yml").read_text()
+    assert "\n  - offline" in settings
+    (script,) = re.findall(r"polyfills: \[(.*)\]", settings)
+    assert "window.Worker" in (DOCS / script).read_text()
+
+
 def test_there_is_code_to_run() -> None:
     assert sum(len(blocks(page, "python")) for page in HOW_TO) >= 3
 

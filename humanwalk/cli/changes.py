@@ -83,7 +83,17 @@ class Changes:
             overrides |= push_overrides(self.push)
         if self.speed is not None:
             overrides |= speed_overrides(self.speed, scenario, overrides)
+        if self.shorthands and "description" not in overrides:
+            overrides["description"] = described(scenario, self.shorthands)
         return overrides
+
+    @property
+    def shorthands(self) -> list[str]:
+        """The shorthands that are given, for people."""
+        numbers = {"speed": (self.speed, "m/s"), "mass": (self.mass, "kg"), "stature": (self.stature, "m")}
+        texts = [f"{name} {value:g} {unit}" for name, (value, unit) in numbers.items() if value is not None]
+        texts += [self.terrain] if self.terrain is not None else []
+        return texts + [f"push {push}" for push in self.push]
 
 
 def overrides_of(pairs: list[str]) -> dict[str, str]:
@@ -99,6 +109,14 @@ def overrides_of(pairs: list[str]) -> dict[str, str]:
             raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
         overrides[key] = value
     return overrides
+
+
+def described(scenario: str, shorthands: list[str]) -> str:
+    """Description of a scenario with shorthands, as YAML: its own could contradict them."""
+    from humanwalk.scenario import load_scenario
+
+    # JSON is YAML, and quotes any character.
+    return json.dumps(f"{load_scenario(scenario).description}; changed: {', '.join(shorthands)}")
 
 
 def speed_overrides(speed: float, scenario: str, overrides: dict[str, str]) -> dict[str, str]:

@@ -50,7 +50,7 @@ def walk(
     checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
-    from humanwalk.cli.walk import follow_overrides, walk_and_write
+    from humanwalk.cli.walk import file_name, follow_overrides, walk_and_write
 
     recorded: dict[str, str] = {}
     if follow is not None:
@@ -69,6 +69,7 @@ def walk(
         scenario,
         overrides,
         output,
+        name=None if follow is None else file_name(follow),
         live=meshcat,
         replay=replay,
         plots=plots,

@@ -1,7 +1,9 @@
 """One walk: simulate with a progress bar, write the run folder, print the summary."""
 
 import json
+import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
@@ -31,6 +33,7 @@ def walk_and_write(
     overrides: Mapping[str, str],
     output: Path | None,
     *,
+    name: str | None = None,
     live: bool,
     replay: bool,
     plots: bool,
@@ -43,6 +46,7 @@ def walk_and_write(
         scenario: Name or path.
         overrides: See `load_scenario`.
         output: Folder of the run, or None for the next free one under runs/.
+        name: Name of the run, instead of the scenario's.
         live: Whether to show the simulation in the browser.
         replay, plots: Whether to write them.
         console: Where progress and summary are printed.
@@ -52,7 +56,7 @@ def walk_and_write(
         ParameterError: Invalid input; no incomplete file is left behind.
     """
     loaded = load_scenario(scenario, overrides)
-    name = scenario if scenario in shipped_scenarios() else Path(scenario).stem.strip(".") or "scenario"
+    name = name or (scenario if scenario in shipped_scenarios() else file_name(Path(scenario)))
     for line in loaded.controller.untested:
         console.print(f"warning: {line}", soft_wrap=True)
     meshcat = make_meshcat(live=live) if live or replay else None
@@ -85,8 +89,21 @@ def walk_and_write(
         console.print(run.summary["fall"]["description"], soft_wrap=True)
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
     if replay:
-        console.print(f"show it: humanwalk replay {run.path}")
+        console.print(f"show it: {program()} replay {run.path}", soft_wrap=True)
     return run
+
+
+def file_name(path: Path) -> str:
+    """Name of the run of a file."""
+    return path.stem.strip(".") or "scenario"
+
+
+def program() -> str:
+    """How this program is called in the present folder, for messages that show a command."""
+    called = Path(sys.argv[0])
+    if called.name == "__main__.py":
+        return "python -m humanwalk"
+    return "humanwalk" if shutil.which("humanwalk") else os.path.relpath(called)
 
 
 def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> dict[str, str]:

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, plain, replace_value
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, replace_value
 from humanwalk.quantity import ParameterError, choice, choices_by_name, did_you_mean, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.study.design import DESIGNS, Design, FullFactorial, Point
@@ -150,7 +150,9 @@ def load_study(name_or_path: str | Path) -> Study:
 
 def parse_study(text: str, name: str = "study", folder: Path = Path()) -> Study:
     """Study from YAML text; relative paths in it count from `folder`. See `load_study`."""
-    return build(Study, complete(read_yaml(text, name), folder))
+    data = complete(read_yaml(text, name), folder)
+    with located(text, name):
+        return build(Study, data)
 
 
 def complete(data: dict[str, Any], folder: Path) -> dict[str, Any]:

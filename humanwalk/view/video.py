@@ -94,8 +94,8 @@ class VideoParameters:
             ParameterError: The part is not in the replay, or has more than MAX_FRAMES frames.
         """
         end = duration if self.end is None else self.end
-        require_in_range("--from", self.begin, "s", 0.0, duration)
-        require_in_range("--to", end, "s", self.begin, duration)
+        require_in_range("--from", self.begin, "s", 0.0, duration, other_units=False)
+        require_in_range("--to", end, "s", self.begin, duration, other_units=False)
         step = self.speed / self.frame_rate
         frames = 1 + math.floor((end - self.begin) / step + FRAME_END)
         if frames > MAX_FRAMES:
@@ -233,7 +233,7 @@ def write_snapshot(
     font = ImageFont.load_default(18)
     with open_stage(page, width, height, duration) as stage:
         for time in times:
-            require_in_range("--times", time, "s", 0.0, stage.duration)
+            require_in_range("--times", time, "s", 0.0, stage.duration, other_units=False)
         for place, time in enumerate(times):
             left = place * (width + STRIP_GAP)
             strip.paste(Image.open(io.BytesIO(stage.still(time, camera(view, time), "png"))), (left, 0))

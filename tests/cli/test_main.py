@@ -18,7 +18,7 @@ from humanwalk.bench import measure
 from humanwalk.bench.result import read_result
 from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.main import app, main
-from humanwalk.cli.walk import summary_table
+from humanwalk.cli.walk import program, summary_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario, shipped_scenarios
@@ -85,7 +85,13 @@ def test_help_of_every_command_has_an_example(humanwalk: Any, command: Any) -> N
 def test_commands_are_grouped_by_subject(humanwalk: Any) -> None:
     _, out, _ = humanwalk("--help")
     groups = [line.strip("╭─╮ ") for line in out.splitlines() if line.startswith("╭")]
-    assert groups == ["Options", "Models, diagrams and cost", "Show and analyze a run", "Simulate"]
+    assert groups == [
+        "Options",
+        "Models, diagrams and cost",
+        "Show and analyze a run",
+        "Simulate",
+        "Studies: many runs",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -242,6 +248,22 @@ def test_interrupted_walk_keeps_its_run(tmp_path: Any) -> None:
     assert process.returncode == 130
     assert "interrupted" in err
     assert Run.open(tmp_path / "walked").summary["end"] == "interrupted"
+
+
+@pytest.mark.parametrize(
+    ("called", "on_path", "shown"),
+    [
+        ("/usr/bin/humanwalk", True, "humanwalk"),
+        (".venv/bin/humanwalk", False, os.path.join(".venv", "bin", "humanwalk")),
+        ("/x/humanwalk/__main__.py", False, "python -m humanwalk"),
+    ],
+)
+def test_shown_commands_call_the_program_as_it_was_called(
+    monkeypatch: pytest.MonkeyPatch, called: str, on_path: bool, shown: str
+) -> None:
+    monkeypatch.setattr(sys, "argv", [called])
+    monkeypatch.setattr(shutil, "which", lambda name: called if on_path else None)
+    assert program() == shown
 
 
 # Bad input: one line, exit code 2, nothing left behind.

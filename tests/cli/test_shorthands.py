@@ -161,6 +161,14 @@ def test_the_body_is_scaled() -> None:
     assert (subject.mass, subject.stature) == (60.0, 1.6)
 
 
+def test_the_description_tells_what_was_changed() -> None:
+    changes = {"speed": 1.2, "terrain": "slope 3 deg", "push": ["9 N s at 1 s from behind"]}
+    text = changed("walk", **changes).description
+    assert text == "1.0 m/s on its own feet; changed: speed 1.2 m/s, slope 3 deg, push 9 N s at 1 s from behind"
+    assert changed("walk", speed=1.2, set_=["description=mine"]).description == "mine"
+    assert changed("walk", set_=["duration=5"]).description == load_scenario("walk").description
+
+
 # Commands.
 
 

@@ -166,6 +166,7 @@ def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic: tup
         "replay.html",
     }
     assert run.summary["physics"] is False
+    assert run.summary["scenario"] == "t"
     assert run.summary["end"] == "completed"
 
 

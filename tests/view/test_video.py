@@ -56,6 +56,11 @@ def test_times_outside_the_replay_are_refused(begin: float, end: float | None) -
         VideoParameters(begin=begin, end=end).times(15.0)
 
 
+def test_a_late_time_is_not_taken_for_milliseconds() -> None:
+    with pytest.raises(ParameterError, match=r"--to: 99 .*the nearest allowed value is 15$"):
+        VideoParameters(end=99.0).times(15.0)
+
+
 def test_sizes_and_times_are_parsed() -> None:
     assert parse_size("1280x720") == (1280, 720)
     assert parse_times("1.0,1.5") == [1.0, 1.5]

@@ -1,0 +1,60 @@
+"""Lines of fields in YAML text, and the errors that name them."""
+
+from pathlib import Path
+
+import pytest
+
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import load_scenario
+from humanwalk.yaml_text import line_of
+
+TEXT = """\
+duration: 5
+controller:
+  balanced:
+    command:
+      points:
+        - {time: 1.0, forward: 1.0}
+        - time: 2.0
+          forward: 9.0
+terrain: plane
+"""
+
+
+@pytest.mark.parametrize(
+    ("field", "line"),
+    [
+        ("duration", 1),
+        ("controller.balanced.command.points", 5),
+        ("controller.balanced.command.points.0.forward", 6),
+        ("controller.balanced.command.points.1", 7),
+        ("controller.balanced.command.points.1.forward", 8),
+        # What a file does not write out is where its group is.
+        ("controller.balanced.command.points.1.turn", 7),
+        ("controller.balanced.command.points.2.turn", 5),
+        ("terrain.plane.slope", 9),
+        ("subject.mass", None),
+        ("", None),
+    ],
+)
+def test_a_field_is_found_at_its_line_or_that_of_its_group(field: str, line: int | None) -> None:
+    assert line_of(TEXT, field) == line
+
+
+def test_an_error_names_file_and_line(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(TEXT)
+    with pytest.raises(
+        ParameterError, match=r"^mine.yaml, line 8: controller.balanced.command.points.1.forward: 9 is out"
+    ):
+        load_scenario(tmp_path / "mine.yaml")
+    (tmp_path / "typo.yaml").write_text("duration: 5\nspeed: 1.2\n")
+    with pytest.raises(ParameterError, match=r"^typo.yaml, line 2: speed: no such field"):
+        load_scenario(tmp_path / "typo.yaml")
+
+
+def test_an_error_of_an_override_has_no_line_of_the_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("duration: 5\nsubject: {mass: 60}\n")
+    with pytest.raises(ParameterError, match=r"^subject.mass: 500 is out of range"):
+        load_scenario(tmp_path / "mine.yaml", {"subject.mass": "500"})
+    with pytest.raises(ParameterError, match=r"^subject.mass: 5 is out of range"):
+        load_scenario(tmp_path / "mine.yaml", {"subject": "{mass: 5}"})
