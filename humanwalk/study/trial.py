@@ -40,7 +40,8 @@ def simulate_trial(trial: Trial) -> Row:
     """
     rows: list[Row] = []
     falls = 0
-    for index, scenario in enumerate(trial.runs.scenarios()):
+    for index, point in enumerate(trial.runs.points):
+        scenario = trial.runs.scenario_at(point)
         row = simulate_row(Job(index, scenario))
         rows.append(row | {name: measure(scenario, row) for name, measure in OF_RUNS.items()})
         falls += not row["survived"]

@@ -154,8 +154,7 @@ def start_values(tuning: Tuning) -> dict[str, float]:
     starts = {name: _start_value(name, tuning.runs.base, limits) for name, limits in tuning.parameters.items()}
     for name, limits in tuning.parameters.items():
         for end in (limits.low, limits.high):
-            for scenario in tuning.with_values(starts | {name: end}).scenarios():
-                del scenario
+            tuning.with_values(starts | {name: end}).require_valid()
     return starts
 
 

@@ -50,7 +50,9 @@ def test_the_start_is_the_scenario_with_what_is_set() -> None:
 
 def test_a_trial_differs_from_the_scenario_in_its_parameters_only() -> None:
     tuning = parse_tuning(text())
-    for before, after in zip(tuning.runs.scenarios(), tuning.with_values({GAIN: 1.3}).scenarios(), strict=True):
+    trial = tuning.with_values({GAIN: 1.3})
+    for point in tuning.runs.points:
+        before, after = tuning.runs.scenario_at(point), trial.scenario_at(point)
         assert before != after
         assert gain_of(after) == 1.3
         assert after.pushes == before.pushes
