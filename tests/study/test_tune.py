@@ -125,7 +125,7 @@ def test_a_tuning_that_was_stopped_resumes_with_the_same_trials(tmp_path: Path, 
             should_stop=lambda stop=stop, done=done: bool(done) and done[-1] >= stop,  # type: ignore[misc]
             function=sphere,
         )
-        assert stop <= len(rows(tmp_path / "parts")) <= max(stop, 1)
+        assert stop <= len(rows(tmp_path / "parts"))
     assert rows(tmp_path / "parts") == rows(tmp_path / "whole")
 
 
