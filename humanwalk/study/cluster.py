@@ -4,7 +4,7 @@ import logging
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 from humanwalk.extras import missing_package
@@ -54,20 +54,22 @@ def local_client(workers: int | None = None, memory_limit: str | int = "auto") -
         workers: their number; None for one per core.
         memory_limit: of each worker [bytes]; a worker above 95 % of it is killed. Default: its share of the machine's.
     """
-    with dask.config.set(SETTINGS), _interrupts_ignored():
-        cluster = LocalCluster(
-            n_workers=workers or usable_cores(),
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address=None,
-            # Without an address it would be the fixed port 8787.
-            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
-            memory_limit=memory_limit,
-            silence_logs=logging.CRITICAL,
-        )
-    with cluster, Client(cluster, set_as_default=False) as client:
-        yield client
+    with _quiet(), ExitStack() as stack:
+        with dask.config.set(SETTINGS), _interrupts_ignored():
+            cluster = stack.enter_context(
+                LocalCluster(
+                    n_workers=workers or usable_cores(),
+                    threads_per_worker=1,
+                    processes=True,
+                    host="127.0.0.1",
+                    dashboard_address=None,
+                    # Without an address it would be the fixed port 8787.
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+                    memory_limit=memory_limit,
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+        yield stack.enter_context(Client(cluster, set_as_default=False))
 
 
 @contextmanager
@@ -80,16 +82,16 @@ def remote_client(address: str) -> Iterator[Client]:
     Raises:
         ParameterError: there is none.
     """
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    try:
-        client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise ParameterError(
-            f"--scheduler {printable(address)}: {printable(error)}; allowed: the address of a running Dask scheduler, "
-            "like tcp://127.0.0.1:8786; start one with: dask scheduler --host 127.0.0.1"
-        ) from None
-    with client:
-        yield client
+    with _quiet():
+        try:
+            client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ParameterError(
+                f"--scheduler {printable(address)}: {printable(error)}; allowed: the address of a running Dask "
+                "scheduler, like tcp://127.0.0.1:8786; start one with: dask scheduler --host 127.0.0.1"
+            ) from None
+        with client:
+            yield client
 
 
 CONNECT_TIMEOUT = 10.0
@@ -109,3 +111,19 @@ def _interrupts_ignored() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+LOGGERS = ("distributed", "distributed.client", "distributed.worker", "distributed.nanny", "tornado", "asyncio")
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Within the block, Dask prints nothing: what matters is an error or a row."""
+    levels = {name: logging.getLogger(name).level for name in LOGGERS}
+    for name in LOGGERS:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)

@@ -13,7 +13,7 @@ fields of the scenario as with `--set`; entries of lists are named by their inde
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
@@ -110,14 +110,18 @@ class Study:
             at = ", ".join(f"{name}: {shown(value)}" for name, value in point.items())
             raise ParameterError(f"point ({printable(at, 300)}): {error}") from None
 
+    def scenarios(self) -> Iterator[Scenario]:
+        """The scenarios of all points in order; see `scenario_at`."""
+        return map(self.scenario_at, self.points)
+
     def require_valid(self) -> None:
         """Raise ParameterError for the first point whose scenario cannot be used; see `scenario_at`."""
         assert self._valid
 
     @cached_property
     def _valid(self) -> bool:
-        for point in self.points:
-            self.scenario_at(point)
+        for _ in self.scenarios():
+            pass
         return True
 
 
