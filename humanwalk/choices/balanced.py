@@ -17,7 +17,6 @@ from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, quantity
-from humanwalk.systems.command_source import CommandSource
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Terrain
@@ -116,7 +115,7 @@ class BalancedController:
             raise ParameterError(
                 "controller: balanced needs the discrete plant; allowed: simulation.integrator: discrete; set it"
             )
-        command = world.add("command", CommandSource(self.command))
+        command = world.add("command", world.sources.command(self.command))
         planner = world.add(
             "planner",
             GaitPlanner(world.model, self.planner, self.first_swing, self.control_period, world.terrain),

@@ -1,13 +1,12 @@
 """Pushes against the body, which act with every controller."""
 
 from humanwalk.choices.world import World
-from humanwalk.systems.push_source import PushSource
 from humanwalk.walking.push import PushParameters
 
 
 def add_pushes(world: World, parameters: PushParameters) -> None:
     """Add `pushes`; its forces are empty where the scenario has none."""
-    pushes = world.add("pushes", PushSource(world.plant, parameters, world.seed))
-    if parameters != PushParameters():
+    pushes = world.add("pushes", world.sources.pushes(world.plant, parameters, world.seed))
+    if pushes.live or parameters != PushParameters():
         # Without pushes the plant would still evaluate them in every step.
         world.spatial_forces.append(pushes.GetOutputPort("spatial_forces"))

@@ -9,6 +9,7 @@ from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import StartParameters
 from humanwalk.control.pd_control import StepImpedance
 from humanwalk.numerics import Array
@@ -30,6 +31,7 @@ class World:
         seed: of everything random; each noise is drawn from a stream of its own, (seed, stream).
         kp, kd: gains of the actuators, in actuator order [N m/rad], [N m s/rad], shape (n,).
         step_impedance: of the actuation, in actuator order.
+        sources: systems that command and push the walker.
         spatial_forces: ports of forces on bodies, connected to the plant at the end.
     """
 
@@ -44,6 +46,7 @@ class World:
     kp: Array
     kd: Array
     step_impedance: StepImpedance
+    sources: Sources = FROM_SCENARIO
     spatial_forces: list[OutputPort] = field(default_factory=list)
 
     @property

@@ -7,12 +7,13 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.choices.controller import Command
 from humanwalk.choices.pushes import add_pushes
+from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.world import add_world, built
 from humanwalk.scenario import Scenario
 
 
-def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
+def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
     Subsystems by name: plant, scene_graph, body_observer, foot_contact, actuators, pushes, and those of the
@@ -32,12 +33,13 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     Args:
         scenario: what is simulated.
         visuals: whether geometry that is only drawn is kept; the plant moves it in every step.
+        sources: systems that command and push the walker.
 
     Raises:
         ParameterError: the scenario's choices do not go together, or one of them cannot be simulated.
     """
     builder = DiagramBuilder()
-    world = add_world(builder, scenario, visuals)
+    world = add_world(builder, scenario, visuals, sources)
     scenario.actuation.add_to(world)
     _connect_command(builder, scenario.controller.add_to(world))
     add_pushes(world, scenario.pushes)
@@ -52,9 +54,9 @@ def make_walker(scenario: Scenario, visuals: bool = True) -> Diagram:
     )
 
 
-def make_diagram(scenario: Scenario, visuals: bool = True) -> Diagram:
+def make_diagram(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
     """The walker of a scenario, or its playback where the controller has no physics."""
-    return make_walker(scenario, visuals) if scenario.controller.physics else make_playback(scenario)
+    return make_walker(scenario, visuals, sources) if scenario.controller.physics else make_playback(scenario)
 
 
 def _connect_command(builder: DiagramBuilder, command: Command) -> None:

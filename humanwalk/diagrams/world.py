@@ -9,6 +9,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.body.plant import add_human, kinematics_plant
 from humanwalk.choices.contact import exclude_unused_contact_sets
+from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_positions
 from humanwalk.choices.world import World
 from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
@@ -27,13 +28,16 @@ ACTUATOR_GAINS = 2
 """Stream of the seed from which the noise of the actuators' gains is drawn."""
 
 
-def add_world(builder: DiagramBuilder, scenario: Scenario, visuals: bool = True) -> World:
+def add_world(
+    builder: DiagramBuilder, scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO
+) -> World:
     """Add plant, scene_graph, body_observer and foot_contact of a scenario; the plant stands at the start.
 
     Args:
         builder: of the diagram.
         scenario: what is simulated.
         visuals: whether geometry that is only drawn is kept; the plant moves it in every step.
+        sources: systems that command and push the walker.
 
     Raises:
         ParameterError: the start, the gains or the contact are not possible.
@@ -73,6 +77,7 @@ def add_world(builder: DiagramBuilder, scenario: Scenario, visuals: bool = True)
         kp=kp,
         kd=kd,
         step_impedance=partial(scenario.actuation.step_impedance, kp=kp, kd=kd),
+        sources=sources,
     )
     world.add("body_observer", BodyObserver(plant), state=world.state)
     contact.add_to(world)

@@ -27,10 +27,15 @@ class PushSource(LeafSystem):
 
     The pushes are a parameter of the context, so that one walker can be pushed in many ways from one state.
 
+    Attributes:
+        live: Whether pushes may be added while the simulation runs.
+
     Outputs:
         spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
         force: (3) sum of all pushes in W [N].
     """
+
+    live = False
 
     def __init__(self, plant: MultibodyPlant, parameters: PushParameters, seed: int) -> None:
         """Create the source.
@@ -65,6 +70,11 @@ class PushSource(LeafSystem):
         """
         context.get_mutable_abstract_parameter(self._pushes).set_value(self._checked(pushes))
 
+    def pushes(self, context: Context) -> tuple[Push, ...]:
+        """The pushes in this system's context."""
+        pushes: Pushes = context.get_abstract_parameter(self._pushes).get_value()
+        return pushes.pushes
+
     def _checked(self, pushes: Sequence[Push]) -> Pushes:
         for push in pushes:
             if not self._plant.HasBodyNamed(push.body):
@@ -76,8 +86,7 @@ class PushSource(LeafSystem):
         return Pushes(tuple(pushes))
 
     def _active(self, context: Context) -> list[Push]:
-        pushes: Pushes = context.get_abstract_parameter(self._pushes).get_value()
-        return [push for push in pushes.pushes if push.is_active(context.get_time())]
+        return [push for push in self.pushes(context) if push.is_active(context.get_time())]
 
     def _calc_spatial_forces(self, context: Context, output: Value) -> None:
         forces = []

@@ -1,11 +1,13 @@
 """The commanded velocity over time: target speeds at given times, approached at bounded rates."""
 
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from humanwalk.numerics import Array
+from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import ParameterError, quantity
 
 
@@ -95,32 +97,64 @@ class CommandParameters:
         )
 
 
+@dataclass(frozen=True)
+class _Ramp:
+    """The part of a profile from a point on: from the command at that time toward the point's speeds."""
+
+    time: float
+    start: Command
+    target: Command
+
+
 class CommandProfile:
-    """The command as a piecewise linear function of time."""
+    """The command over time.
+
+    The command at a time depends on the points up to then only, to the last bit: a profile to which points are added
+    while it is followed is the same as one that had them from the beginning.
+    """
 
     def __init__(self, parameters: CommandParameters) -> None:
-        points = parameters.points
-        times = [point.time for point in points]
-        self._forward = _ramps(times, [point.forward for point in points], parameters.acceleration)
-        self._sideways = _ramps(times, [point.sideways for point in points], parameters.acceleration)
-        self._turn = _ramps(times, [point.turn for point in points], parameters.turn_acceleration)
+        self.parameters = parameters
+        self._ramps: list[_Ramp] = []
+        for point in parameters.points:
+            start = self.at(point.time)
+            self._ramps.append(_Ramp(point.time, start, Command(point.forward, point.sideways, point.turn)))
 
     def at(self, time: float) -> Command:
         """The command at a time [s]."""
-        return Command(*(float(np.interp(time, *ramps)) for ramps in (self._forward, self._sideways, self._turn)))
+        ramp = self._ramp_at(time)
+        if ramp is None:
+            return Command()
+        change = self.parameters.acceleration * (time - ramp.time)
+        turn_change = self.parameters.turn_acceleration * (time - ramp.time)
+        return Command(
+            _toward(ramp.start.forward, ramp.target.forward, change),
+            _toward(ramp.start.sideways, ramp.target.sideways, change),
+            _toward(ramp.start.turn, ramp.target.turn, turn_change),
+        )
 
     def over(self, times: Array) -> tuple[Array, Array, Array]:
-        """Forward and sideways speed [m/s] and turn rate [rad/s] at times [s]; each of the shape of `times`."""
-        return np.interp(times, *self._forward), np.interp(times, *self._sideways), np.interp(times, *self._turn)
+        """Forward and sideways speed [m/s] and turn rate [rad/s] at times [s]; each of the shape of `times`, (n,)."""
+        commands = (self.at(time) for time in times.tolist())
+        speeds = np.array([(command.forward, command.sideways, command.turn) for command in commands]).reshape(-1, 3)
+        return speeds[:, 0], speeds[:, 1], speeds[:, 2]
+
+    def target_at(self, time: float) -> Command:
+        """The speeds that the command changes toward, or has reached, at a time [s]."""
+        ramp = self._ramp_at(time)
+        return Command() if ramp is None else ramp.target
+
+    def steered(self, time: float, target: Command) -> "CommandProfile":
+        """The profile with other speeds from a time [s] on, in place of all points from then on."""
+        earlier = tuple(point for point in self.parameters.points if point.time < time)
+        point = CommandPoint(time, target.forward, target.sideways, target.turn)
+        return CommandProfile(replace(self.parameters, points=(*earlier, point)))
+
+    def _ramp_at(self, time: float) -> _Ramp | None:
+        begun = bisect_right(self._ramps, time, key=lambda ramp: ramp.time)
+        return self._ramps[begun - 1] if begun else None
 
 
-def _ramps(times: list[float], targets: list[float], rate: float) -> tuple[Array, Array]:
-    """Breakpoints (times, values) of a function that moves from 0 towards each target at a constant rate."""
-    knots, values = [0.0], [0.0]
-    for time, target in zip(times, targets, strict=True):
-        start = float(np.interp(time, knots, values))
-        # A point may interrupt the ramp of the point before it.
-        kept = sum(knot < time for knot in knots)
-        knots = [*knots[:kept], time, time + abs(target - start) / rate]
-        values = [*values[:kept], start, target]
-    return np.array(knots), np.array(values)
+def _toward(start: float, target: float, change: float) -> float:
+    """A value moved from `start` toward `target`, by no more than `change`."""
+    return start + clip(target - start, -change, change)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.command_source import CommandSource
-from humanwalk.walking.command import CommandParameters, CommandPoint, CommandProfile
+from humanwalk.walking.command import Command, CommandParameters, CommandPoint, CommandProfile
 
 WALK = CommandParameters(points=(CommandPoint(1.0, forward=1.0), CommandPoint(6.0, sideways=0.2, turn=0.5)))
 
@@ -73,6 +73,16 @@ def test_a_point_may_interrupt_the_ramp_of_the_point_before() -> None:
     parameters = CommandParameters(points=(CommandPoint(0.0, forward=1.0), CommandPoint(1.0)))
     assert command_at(1.0, parameters)[0] == pytest.approx(0.4)
     assert command_at(1.5, parameters)[0] == pytest.approx(0.2)
+
+
+@given(profiles, st.floats(0.1, 25.0), st.floats(0.0, 1.0))
+def test_the_command_at_a_time_does_not_depend_on_later_points(
+    parameters: CommandParameters, time: float, share: float
+) -> None:
+    full, steered = CommandProfile(parameters), CommandProfile(parameters).steered(time, Command(0.3, 0.2, 0.1))
+    assert steered.at(share * time) == full.at(share * time)
+    assert steered.at(time) == full.at(time)
+    assert steered.target_at(time) == Command(0.3, 0.2, 0.1)
 
 
 def test_without_points_the_command_is_zero() -> None:
