@@ -1,5 +1,6 @@
 """Shows how a walker that has fallen comes to lie; nothing of it is measured."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 
 from pydrake.geometry import Meshcat
@@ -21,20 +22,20 @@ def replay_duration(summary: Summary) -> float:
     return summary["duration_s"] + (TIME_TO_LIE if summary["end"] == "fell" else 0.0)
 
 
-def show_fall(scenario: Scenario, meshcat: Meshcat, time: float, state: Array, realtime_rate: float) -> None:
-    """Continue Meshcat's picture after a fall for TIME_TO_LIE, with a body without control.
+def show_fall(scenario: Scenario, meshcats: Sequence[Meshcat], time: float, state: Array, realtime_rate: float) -> None:
+    """Continue the pictures after a fall for TIME_TO_LIE, with a body without control.
 
     Args:
         scenario: What was simulated.
-        meshcat: Shows the walk, and records it.
+        meshcats: They show the walk; recordings continue.
         time: Of the fall [s].
         state: [q; v] of the walker's plant at that time.
         realtime_rate: Simulated seconds per second that are not exceeded; 0 is as fast as it goes.
     """
     builder = DiagramBuilder()
     ragdoll = builder.AddNamedSystem("ragdoll", make_ragdoll(scenario.subject, scenario.terrain, state))
-    query_object, frame_rate = ragdoll.GetOutputPort("query_object"), scenario.recording.frame_rate
-    add_visualizer(builder, query_object, meshcat, frame_rate, scenario.terrain, new_recording=False)
+    for meshcat in meshcats:
+        add_visualizer(builder, ragdoll, meshcat, scenario.recording.frame_rate, scenario.terrain, record=False)
     simulator = Simulator(builder.Build())
     simulator.set_target_realtime_rate(realtime_rate)
     context = simulator.get_mutable_context()

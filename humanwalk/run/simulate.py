@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from pydrake.geometry import Meshcat
 from pydrake.multibody.plant import MultibodyPlant
@@ -11,6 +12,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
+from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
@@ -21,6 +23,7 @@ from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
 from humanwalk.scenario import Scenario
+from humanwalk.systems.following_view import FollowingView
 
 CENIC_MAX_STEP = 0.01
 """Largest step that the error control may choose [s]: no longer than a heel strike lasts."""
@@ -35,12 +38,16 @@ class Prepared:
         walker: the scenario's diagram.
         plant: the plant in it; None where a recording is shown without physics.
         recorder: its log sinks; None where nothing is recorded.
+        live_view: of the live picture; None where there is none.
+        meshcats: all that show the motion.
     """
 
     simulator: Simulator
     walker: Diagram
     plant: MultibodyPlant | None
     recorder: Recorder | None
+    live_view: FollowingView | None = None
+    meshcats: tuple[Meshcat, ...] = ()
 
     @property
     def watched(self) -> System:
@@ -48,34 +55,38 @@ class Prepared:
         return self.plant or self.walker
 
 
-def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = True) -> Prepared:
+def prepare(
+    scenario: Scenario,
+    meshcat: Meshcat | None = None,
+    record: bool = True,
+    live: Meshcat | None = None,
+    sources: Sources = FROM_SCENARIO,
+) -> Prepared:
     """Build the root diagram of a scenario and its simulator.
 
     Args:
         scenario: what to simulate.
         meshcat: shows and records the motion.
         record: whether signals are recorded.
+        live: shows the motion without recording it.
+        sources: systems that command and push the walker.
 
     Raises:
         ParameterError: the scenario cannot be simulated.
     """
     builder = DiagramBuilder()
-    walker = builder.AddNamedSystem("walker", make_diagram(scenario, visuals=meshcat is not None))
+    meshcats = tuple(shown for shown in (meshcat, live) if shown is not None)
+    walker = builder.AddNamedSystem("walker", make_diagram(scenario, bool(meshcats), sources))
     plant = walker.GetSubsystemByName("plant") if walker.HasSubsystemNamed("plant") else None
     assert plant is None or isinstance(plant, MultibodyPlant)
     recorder = None
     if record:
         joints = JointMap.of(plant or kinematics_plant(scenario.subject))
         recorder = Recorder.add_to(builder, walker, joints, scenario.recording.signal_period)
+    show = partial(add_visualizer, builder, walker, frame_rate=scenario.recording.frame_rate, terrain=scenario.terrain)
     if meshcat is not None:
-        add_visualizer(
-            builder,
-            walker.GetOutputPort("query_object"),
-            meshcat,
-            scenario.recording.frame_rate,
-            scenario.terrain,
-            walker.GetOutputPort("foot_forces") if walker.HasOutputPort("foot_forces") else None,
-        )
+        show(meshcat)
+    live_view = None if live is None else show(live, record=False)
     diagram = builder.Build()
     diagram.set_name("humanwalk")
     simulator = Simulator(diagram)
@@ -89,7 +100,7 @@ def prepare(scenario: Scenario, meshcat: Meshcat | None = None, record: bool = T
             ),
             simulator,
         )
-    return Prepared(simulator, walker, plant, recorder)
+    return Prepared(simulator, walker, plant, recorder, live_view, meshcats)
 
 
 def simulate(
@@ -115,9 +126,37 @@ def simulate(
         ParameterError: the scenario cannot be simulated, or failed before there was anything to record.
     """
     prepared = prepare(scenario, meshcat)
+    prepared.simulator.set_target_realtime_rate(realtime_rate)
+    monitor = Monitor(prepared.watched, scenario.terrain)
+    return simulate_prepared(
+        scenario, prepared, monitor, on_progress, on_checkpoint, checkpoint_period, on_end, realtime_rate
+    )
+
+
+def simulate_prepared(
+    scenario: Scenario,
+    prepared: Prepared,
+    monitor: Monitor,
+    on_progress: Callable[[float], None] | None = None,
+    on_checkpoint: Callable[[Outcome], None] | None = None,
+    checkpoint_period: float = 60.0,
+    on_end: Callable[[Outcome], object] | None = None,
+    fall_rate: float = 0.0,
+) -> Outcome:
+    """Simulate what was prepared; see `simulate`.
+
+    Args:
+        scenario: what was prepared.
+        prepared: with a recorder.
+        monitor: of its plant; another cause than those of a Monitor may interrupt it.
+        on_progress, on_checkpoint, checkpoint_period, on_end: see `simulate`.
+        fall_rate: simulated seconds per second that are not exceeded after a fall; 0 is as fast as it goes.
+
+    Raises:
+        ParameterError: it failed before there was anything to record.
+    """
     simulator, recorder = prepared.simulator, prepared.recorder
     assert recorder is not None
-    simulator.set_target_realtime_rate(realtime_rate)
     started = last_checkpoint = time.perf_counter()
 
     def look(simulated: float) -> None:
@@ -130,7 +169,7 @@ def simulate(
             on_checkpoint(Outcome(scenario, signals, "unfinished", now - started))
             last_checkpoint = time.perf_counter()
 
-    monitor = Monitor(prepared.watched, scenario.terrain, on_progress=look)
+    monitor.on_progress = look
     with monitor.stop_on_signal():
         try:
             simulator.Initialize()
@@ -151,8 +190,8 @@ def simulate(
         outcome = Outcome(scenario, signals, end, wall_time)
         if on_end is not None:
             on_end(outcome)
-        if end == "fell" and meshcat is not None and prepared.plant is not None:
+        if end == "fell" and prepared.meshcats and prepared.plant is not None:
             context = simulator.get_context()
             state = prepared.plant.GetPositionsAndVelocities(prepared.plant.GetMyContextFromRoot(context))
-            show_fall(scenario, meshcat, context.get_time(), state, realtime_rate)
+            show_fall(scenario, prepared.meshcats, context.get_time(), state, fall_rate)
     return outcome

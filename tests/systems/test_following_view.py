@@ -15,7 +15,8 @@ from humanwalk.body.limbs import PELVIS
 from humanwalk.body.plant import Subject, add_human
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
-from humanwalk.systems.following_view import ARROW_LENGTH_PER_FORCE, LATERAL_SLACK, SCENE, FollowingView
+from humanwalk.systems.following_view import LATERAL_SLACK, SCENE, FollowingView
+from humanwalk.systems.force_arrow import HEAD_LENGTH, LENGTH_PER_FORCE
 from humanwalk.terrain import Plane
 from humanwalk.view.replay import make_meshcat
 
@@ -38,7 +39,13 @@ def transform(meshcat: Any, path: Any) -> RigidTransform:
     return RigidTransform(doubles(meshcat._GetPackedTransform(path), 16).reshape(4, 4).T)
 
 
-def show(meshcat: Meshcat, terrain: Plane, forces: list[float] | None = None) -> None:
+def show(
+    meshcat: Meshcat,
+    terrain: Plane,
+    forces: list[float] | None = None,
+    following: bool = True,
+    **inputs: list[float],
+) -> None:
     """Publish the human standing at P_WP once."""
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
@@ -49,15 +56,17 @@ def show(meshcat: Meshcat, terrain: Plane, forces: list[float] | None = None) ->
     builder.Connect(scene_graph.get_query_output_port(), view.GetInputPort("query_object"))
     diagram = builder.Build()
     context = diagram.CreateDefaultContext()
-    if forces is not None:
-        view.GetInputPort("foot_forces").FixValue(view.GetMyContextFromRoot(context), np.array(forces))
+    inputs |= {} if forces is None else {"foot_forces": forces}
+    for name, values in inputs.items():
+        view.GetInputPort(name).FixValue(view.GetMyContextFromRoot(context), np.array(values))
+    view.follow(view.GetMyMutableContextFromRoot(context), following)
     Simulator(diagram, context).Initialize()
 
 
 def test_ports(meshcat: Meshcat) -> None:
     view = FollowingView(meshcat, 32.0, Plane())
-    assert [view.get_input_port(i).get_name() for i in range(2)] == ["query_object", "foot_forces"]
-    assert view.GetInputPort("foot_forces").size() == 16
+    sizes = {"query_object": 0, "foot_forces": 16, "push": 3, "support_wrench": 6}
+    assert {view.get_input_port(i).get_name(): view.get_input_port(i).size() for i in range(4)} == sizes
     assert view.num_output_ports() == 0
 
 
@@ -74,7 +83,7 @@ def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshc
     X_WA = transform(meshcat, f"{SCENE}/foot_force/Right")
     np.testing.assert_allclose(X_WA.translation(), RIGHT[3:6], atol=1e-12)
     np.testing.assert_allclose(X_WA.rotation().col(2), force / np.linalg.norm(force), atol=1e-12)
-    length = ARROW_LENGTH_PER_FORCE * np.linalg.norm(force)
+    length = LENGTH_PER_FORCE * np.linalg.norm(force)
     head = transform(meshcat, f"{SCENE}/foot_force/Right/head")
     np.testing.assert_allclose(head.translation(), [0.0, 0.0, length], atol=1e-12)
     scale = doubles(meshcat._GetPackedProperty(f"{SCENE}/foot_force/Right/shaft", "scale"), 3)
@@ -86,6 +95,32 @@ def test_arrow_of_an_unloaded_foot_is_invisible(meshcat: Any) -> None:
     visible = {side: meshcat._GetPackedProperty(f"{SCENE}/foot_force/{side}", "visible") for side in ("Right", "Left")}
     # Msgpack's true and false.
     assert {side: packed[-1] for side, packed in visible.items()} == {"Right": 0xC3, "Left": 0xC2}
+
+
+def test_scene_stays_where_it_is_unless_it_follows(meshcat: Meshcat) -> None:
+    meshcat.SetTransform(SCENE, RigidTransform(np.array([5.0, 6.0, 0.0])))
+    show(meshcat, Plane(), following=False)
+    np.testing.assert_allclose(transform(meshcat, SCENE).translation(), [5.0, 6.0, 0.0], atol=1e-12)
+
+
+def test_arrow_of_a_push_ends_at_the_chest_and_is_visible_while_it_acts(meshcat: Any) -> None:
+    show(meshcat, Plane(), push=[0.0, 300.0, 0.0])
+    X_WA = transform(meshcat, f"{SCENE}/push")
+    np.testing.assert_allclose(X_WA.rotation().col(2), [0.0, 1.0, 0.0], atol=1e-12)
+    # Between the shoulders of a human that stands upright above the pelvis.
+    tip = X_WA @ np.array([0.0, 0.0, 300.0 * LENGTH_PER_FORCE + HEAD_LENGTH])
+    np.testing.assert_allclose(tip[:2], P_WP[:2], atol=0.1)
+    assert 0.1 < tip[2] - P_WP[2] < 0.6
+    assert meshcat._GetPackedProperty(f"{SCENE}/push", "visible")[-1] == 0xC3
+    show(meshcat, Plane(), push=[0.0, 0.0, 0.0])
+    assert meshcat._GetPackedProperty(f"{SCENE}/push", "visible")[-1] == 0xC2
+
+
+def test_arrow_of_the_external_support_begins_at_the_pelvis(meshcat: Any) -> None:
+    show(meshcat, Plane(), support_wrench=[9.0, 9.0, 9.0, 0.0, 0.0, 150.0])
+    np.testing.assert_allclose(transform(meshcat, f"{SCENE}/external_support").translation(), P_WP, atol=1e-12)
+    head = transform(meshcat, f"{SCENE}/external_support/head")
+    np.testing.assert_allclose(head.translation(), [0.0, 0.0, 150.0 * LENGTH_PER_FORCE], atol=1e-12)
 
 
 def test_scene_without_a_human_is_refused(meshcat: Meshcat) -> None:

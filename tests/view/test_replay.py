@@ -65,8 +65,7 @@ def meshcat() -> Meshcat:
 def page(meshcat: Meshcat) -> str:
     builder = DiagramBuilder()
     walker = builder.AddSystem(make_walker(load_scenario("thesis")))
-    ports = {name: walker.GetOutputPort(name) for name in ("query_object", "foot_forces")}
-    add_visualizer(builder, ports["query_object"], meshcat, FRAME_RATE, Plane(), ports["foot_forces"])
+    add_visualizer(builder, walker, meshcat, FRAME_RATE, Plane())
     Simulator(builder.Build()).AdvanceTo(DURATION)
     return static_page(meshcat, TITLE)
 
