@@ -5,13 +5,21 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from humanwalk.cli import inspection_commands, run_commands, simulation_commands, study_commands, tuning_commands
+from humanwalk.cli import (
+    drive_commands,
+    inspection_commands,
+    run_commands,
+    simulation_commands,
+    study_commands,
+    tuning_commands,
+)
 from humanwalk.cli.common import BAD_INPUT, MAX_MESSAGE, app, console
 from humanwalk.cli.streams import discard, exit_on_signals, open_missing
 from humanwalk.quantity import ParameterError, printable
 
 __all__ = [
     "app",
+    "drive_commands",
     "inspection_commands",
     "main",
     "run_commands",

@@ -5,8 +5,8 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -56,41 +56,68 @@ def walk_and_write(
         ParameterError: Invalid input; no incomplete file is left behind.
     """
     loaded = load_scenario(scenario, overrides)
-    name = name or (scenario if scenario in shipped_scenarios() else file_name(Path(scenario)))
+    name = name or name_of(scenario)
     for line in loaded.controller.untested:
         console.print(f"warning: {line}", soft_wrap=True)
     meshcat = make_meshcat(live=live) if live or replay else None
     if live and meshcat is not None:
         console.print(f"live at {meshcat.web_url()}")
-    path, made = new_run_folder(output, name)
-    # A folder that another run has claimed meanwhile stays: the claim is outside the block that removes the folder.
-    with claimed(path):
-        try:
-            require_room(path, loaded)
-            _simulate_and_write(loaded, name, path, meshcat, live, checkpoint_period, console)
-        except BaseException:
-            # Nothing was recorded: an empty folder would obstruct the next attempt.
-            with suppress(OSError):
-                for folder in made:
-                    folder.rmdir()
-            raise
+    with run_folder(output, name, loaded) as path:
+        _simulate_and_write(loaded, name, path, meshcat, live, checkpoint_period, console)
     run = Run.open(path)
     if not run.summary["physics"]:
         console.print("no physics: joints and pelvis follow the recording exactly; no forces, torques or balance")
-    duration = run.summary["duration_s"]
+    illustrate(run, meshcat if replay else None, plots=plots, console=console)
+    return run
+
+
+def name_of(scenario: str) -> str:
+    """Name of a run of a scenario, which is given by name or path."""
+    return scenario if scenario in shipped_scenarios() else file_name(Path(scenario))
+
+
+@contextmanager
+def run_folder(wanted: Path | None, name: str, scenario: Scenario) -> Iterator[Path]:
+    """The folder of a new run, claimed within the block; removed after it if nothing was written.
+
+    Raises:
+        ParameterError: It is in use, cannot be made, or its disk is too full for the scenario.
+    """
+    path, made = new_run_folder(wanted, name)
+    # A folder that another run has claimed meanwhile stays: the claim is outside the block that removes the folder.
+    with claimed(path):
+        try:
+            require_room(path, scenario)
+            yield path
+        finally:
+            # An empty folder would obstruct the next attempt.
+            with suppress(OSError):
+                for folder in made:
+                    folder.rmdir()
+
+
+def illustrate(run: Run, replay: Any, *, plots: bool, console: Console) -> None:
+    """Write replay page and plots into a run folder, and print the summary.
+
+    Args:
+        run: The run.
+        replay: A Meshcat with its recording; None for no page.
+        plots: Whether to write them.
+        console: Where progress and summary are printed.
+    """
     with console.status("writing replay and plots"):
-        if replay and meshcat is not None:
-            title = printable(f"{name}: {loaded.description}, {duration:g} s", MAX_TITLE)
-            write_text(path / REPLAY, static_page(meshcat, title))
+        if replay is not None:
+            name, description = run.summary["scenario"], run.scenario.description
+            title = printable(f"{name}: {description}, {run.summary['duration_s']:g} s", MAX_TITLE)
+            write_text(run.path / REPLAY, static_page(replay, title))
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))
     if run.summary["fall"] is not None:
         console.print(run.summary["fall"]["description"], soft_wrap=True)
     console.print(f"{run.path}: " + ", ".join(sorted(entry.name for entry in run.path.iterdir())))
-    if replay:
+    if replay is not None:
         console.print(f"show it: {program()} replay {run.path}", soft_wrap=True)
-    return run
 
 
 def file_name(path: Path) -> str:
@@ -124,7 +151,7 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
     }
 
 
-def _write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:
+def write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:
     """Write the run into its folder, or, if that fails, into a temporary one, so that the simulation is not lost.
 
     Raises:
@@ -173,7 +200,7 @@ def _simulate_and_write(
             realtime_rate=1.0 if live else 0.0,
             on_checkpoint=checkpoint,
             checkpoint_period=checkpoint_period,
-            on_end=lambda outcome: _write_or_rescue(path, outcome, name),
+            on_end=lambda outcome: write_or_rescue(path, outcome, name),
         )
     finally:
         if progress.live.is_started:

@@ -11,6 +11,7 @@ import json
 import os
 import re
 import socket
+import stat
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cache
@@ -45,17 +46,18 @@ RECORDING = re.compile(RECORDING_TAG + r'(\["[A-Za-z0-9+/=", ]+"\])</script>')
 TITLE = re.compile(r"<title>([^<]{0,2000})</title>")
 
 
-def make_meshcat(*, live: bool = False) -> Meshcat:
+def make_meshcat(*, live: bool = False, port: int | None = None) -> Meshcat:
     """A Meshcat with light and camera set for a walker.
 
     Args:
         live: Whether it listens on this machine for browsers that watch. Without, its port is closed: any web page
             that is open in a browser could connect to it.
+        port: At which it listens; None for the first free one from 7000 on.
 
     Raises:
         ParameterError: No server can be started.
     """
-    meshcat = _quiet_meshcat() if not live else _start_meshcat()
+    meshcat = _quiet_meshcat() if not live else _start_meshcat(port)
     for path in ("/Grid", "/Axes", "/Lights/SpotLight", "/Lights/PointLightNegativeX", "/Lights/PointLightPositiveX"):
         meshcat.SetProperty(path, "visible", False)
     meshcat.SetProperty("/Background/<object>", "top_color", [0.62, 0.76, 0.90])
@@ -128,11 +130,12 @@ def _shell() -> tuple[str, str]:
     )
 
 
-def _start_meshcat() -> Meshcat:
+def _start_meshcat(port: int | None = None) -> Meshcat:
     try:
-        return Meshcat(MeshcatParams(host="localhost", show_stats_plot=False))
+        return Meshcat(MeshcatParams(host="localhost", port=port, show_stats_plot=False))
     except RuntimeError as error:
-        raise ParameterError(f"replay: Meshcat does not start: {error}; run with --no-replay") from None
+        reason = f"replay: Meshcat does not start: {error}; run with --no-replay"
+        raise ParameterError(reason if port is None else f"--port {port}: {error}; choose a free port") from None
 
 
 def _quiet_meshcat() -> Meshcat:
@@ -148,6 +151,9 @@ def _quiet_meshcat() -> Meshcat:
 def _listening(port: int) -> Iterator[int]:
     """File descriptors of this process that listen at a TCP port."""
     for name in os.listdir("/dev/fd"):
+        with suppress(OSError):
+            if not stat.S_ISSOCK(os.fstat(int(name)).st_mode):
+                continue
         with suppress(OSError), socket.socket(fileno=os.dup(int(name))) as candidate:
             listens = candidate.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN)
             if listens and candidate.family in (socket.AF_INET, socket.AF_INET6) and candidate.getsockname()[1] == port:

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 from pydrake.systems.framework import Context
 
-from humanwalk.cli.walk import _write_or_rescue
+from humanwalk.cli.walk import write_or_rescue
 from humanwalk.control.pd_control import PdLaw
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
@@ -248,7 +248,7 @@ def test_run_that_cannot_be_written_to_its_folder_is_rescued(tmp_path: Path, mon
     outcome = simulate(load_scenario("thesis", {"duration": "0.02"}))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     with pytest.raises(ParameterError, match="the run is saved in") as raised:
-        _write_or_rescue(tmp_path / "gone", outcome, "thesis")
+        write_or_rescue(tmp_path / "gone", outcome, "thesis")
     (rescue,) = tmp_path.iterdir()
     assert str(rescue) in str(raised.value)
     assert Run.open(rescue).signals.equals(outcome.signals)
@@ -264,7 +264,7 @@ def test_full_disk_without_a_folder_for_temporary_files_is_one_line(
 
     monkeypatch.setattr("tempfile.mkdtemp", none)
     with pytest.raises(ParameterError, match="No such file or directory"):
-        _write_or_rescue(tmp_path / "gone", outcome, "thesis")
+        write_or_rescue(tmp_path / "gone", outcome, "thesis")
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "\udcff", "a\0b"], ids=["too long", "not UTF-8", "NUL"])

@@ -87,9 +87,9 @@ def test_commands_are_grouped_by_subject(humanwalk: Any) -> None:
     groups = [line.strip("╭─╮ ") for line in out.splitlines() if line.startswith("╭")]
     assert groups == [
         "Options",
+        "Simulate",
         "Models, diagrams and cost",
         "Show and analyze a run",
-        "Simulate",
         "Studies: many runs",
     ]
 

@@ -2,6 +2,7 @@ import _thread
 import base64
 import hashlib
 import io
+import os
 import re
 import signal
 import socket
@@ -205,6 +206,15 @@ def test_server_listens_on_the_loopback_only() -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no /proc/net/tcp to see open ports in")
+def test_meshcat_that_does_not_listen_leaves_no_copies_of_open_files(tmp_path: Path) -> None:
+    def copies() -> int:
+        return sum(os.path.realpath(f"/dev/fd/{name}") == str(file.name) for name in os.listdir("/dev/fd"))
+
+    with open(tmp_path / "open", "wb") as file:
+        make_meshcat()
+        assert copies() == 1
+
+
 def test_meshcat_listens_on_the_loopback_only_and_only_when_live(meshcat: Meshcat) -> None:
     assert listening_addresses(meshcat.port()) == set()
     live = make_meshcat(live=True)

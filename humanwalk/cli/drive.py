@@ -1,0 +1,108 @@
+"""Driven walks: each is simulated by hand on a page, and saved in a run folder of its own."""
+
+import threading
+import webbrowser
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from rich.console import Console
+
+from humanwalk.cli.walk import illustrate, run_folder, write_or_rescue
+from humanwalk.quantity import ParameterError
+from humanwalk.run.driven import require_drivable
+from humanwalk.run.folder import Run
+from humanwalk.run.monitor import caught_signals
+from humanwalk.run.outcome import Outcome
+from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.view.drive import Drive, Ended, drive, wait_for_reset
+from humanwalk.view.drive_page import DrivePage
+from humanwalk.view.replay import make_meshcat
+
+NAME = "drive"
+"""Of driven runs."""
+
+
+def drive_and_write(
+    scenario: str,
+    overrides: Mapping[str, str],
+    output: Path | None,
+    *,
+    browser: bool,
+    port: int | None,
+    record: bool,
+    replay: bool,
+    plots: bool,
+    console: Console,
+    checkpoint_period: float = 60.0,
+) -> list[Run]:
+    """Drive a scenario until Ctrl-C; returns the saved runs, one for each reset and the last.
+
+    Args:
+        scenario: Name or path.
+        overrides: See `load_scenario`.
+        output: Folder of the first run, whose name the others extend by a number; None for the next free ones under
+            runs/.
+        browser: Whether to open the page.
+        port: Of the page; None for the first free one from 7000 on.
+        record: Whether runs are saved unless the page decides otherwise.
+        replay, plots: Whether to write them.
+        console: Where the address and summaries are printed.
+        checkpoint_period: Wall-clock seconds between checkpoints.
+
+    Raises:
+        ParameterError: Invalid input.
+    """
+    loaded = load_scenario(scenario, overrides)
+    require_drivable(loaded)
+    for line in loaded.controller.untested:
+        console.print(f"warning: {line}", soft_wrap=True)
+    page = DrivePage(make_meshcat(live=True, port=port))
+    url = page.meshcat.web_url()
+    console.print(f"drive at {url} (Ctrl-C saves and ends)", soft_wrap=True)
+    if browser:
+        # A text browser in this terminal does not return until it is closed.
+        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+    runs: list[Run] = []
+    while True:
+        wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
+        ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
+        runs += [run] if run else []
+        if ended is Ended.WALK:
+            ended = wait_for_reset(page)
+        if ended is Ended.INTERRUPT:
+            return runs
+
+
+def _drive_once(
+    scenario: Scenario,
+    page: DrivePage,
+    wanted: Path | None,
+    record: bool,
+    replay: bool,
+    plots: bool,
+    console: Console,
+    checkpoint_period: float,
+) -> tuple[Ended, Run | None]:
+    recording = make_meshcat() if replay else None
+    with run_folder(wanted, NAME, scenario) as path:
+
+        def checkpoint(so_far: Outcome) -> None:
+            # A disk that is full now may have space at the end.
+            with suppress(ParameterError):
+                so_far.write(path, NAME)
+
+        def save(walk: Drive) -> None:
+            if walk.record:
+                write_or_rescue(path, walk.outcome, NAME)
+            else:
+                for file in path.iterdir():
+                    file.unlink()
+
+        walk = drive(scenario, page, recording, record, checkpoint, checkpoint_period, save)
+    if not walk.record:
+        return walk.ended, None
+    run = Run.open(path)
+    with caught_signals() as received:
+        illustrate(run, recording, plots=plots, console=console)
+    return Ended.INTERRUPT if received else walk.ended, run

@@ -1,0 +1,55 @@
+"""Commands with a hand at the controls: drive."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from humanwalk.cli.changes import Changes, takes_changes
+from humanwalk.cli.common import SIMULATE, ScenarioArgument, app, console
+
+DURATION = 300.0
+"""Longest driven walk unless --duration is given [s]."""
+
+
+@app.command(
+    rich_help_panel=SIMULATE,
+    epilog="Examples: humanwalk drive  |  humanwalk drive stand --mass 55  |  humanwalk drive thesis -o runs/pushed",
+)
+@takes_changes
+def drive(
+    changes: Changes,
+    scenario: ScenarioArgument = "walk",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the run; new or empty. Default: runs/drive.")
+    ] = None,
+    duration: Annotated[float, typer.Option(help="Longest simulated time of a walk [s].")] = DURATION,
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+    port: Annotated[
+        int | None, typer.Option(min=1024, max=65535, help="Port of the page. Default: the first free one from 7000.")
+    ] = None,
+    record: Annotated[bool, typer.Option(help="Save the walks; the page can change it.")] = True,
+    replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
+    plots: Annotated[bool, typer.Option(help="Write the plots.")] = False,
+    checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
+) -> None:
+    """Drive a walker in the browser, in real time: steer it, push it, pause; every walk becomes a run.
+
+    Arrow keys or W and S: forward speed and turning; A and D: sideways; numeric keypad: pushes; space: pause; N: one
+    frame; R: reset. Ctrl-C in this terminal saves and ends.
+    """
+    from humanwalk.cli.drive import drive_and_write
+
+    overrides = changes.overrides(scenario) | {"duration": repr(duration)}
+    drive_and_write(
+        scenario,
+        overrides,
+        output,
+        browser=browser,
+        port=port,
+        record=record,
+        replay=replay,
+        plots=plots,
+        console=console,
+        checkpoint_period=checkpoint,
+    )
