@@ -1,13 +1,17 @@
 """Puts the tables of benchmarks/results into the pages of docs, between their marks.
 
 python benchmarks/pages.py
+python benchmarks/pages.py runs/balance_speeds runs/push_random    # and takes over the tables of these studies
 """
 
 import json
 import re
-from collections.abc import Callable, Iterable, Sequence
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+from studies import STUDIES, keep, table
 
 from humanwalk.bench.result import COLUMNS, read_result
 from humanwalk.files import write_text
@@ -17,11 +21,6 @@ RESULTS = ROOT / "benchmarks" / "results"
 DOCS = ROOT / "docs"
 BUSY = 1.5
 """Load above which more than the measured process was running."""
-
-
-def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [headings, ["---", *["---:"] * (len(headings) - 1)], *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def measured_on(machine: dict[str, Any]) -> str:
@@ -146,87 +145,6 @@ def mujoco() -> str:
     )
 
 
-def balance_speeds() -> str:
-    rows = sorted(load("balance_speeds"), key=lambda row: row["run"])
-    return table(
-        ["commanded", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps", "failed programs"],
-        [[f"{row['run'].split()[-1]} m/s", *_walked(row), str(row["steps"]), str(row["qp_failures"])] for row in rows],
-    )
-
-
-def _walked(row: dict[str, Any]) -> list[str]:
-    cost = _number(row["cost_of_transport"], ".2f")
-    return [_end(row), f"{row['speed_m_s']:.3f}", f"{100 * row['largest_y_m']:.1f}", cost]
-
-
-def _end(row: dict[str, Any]) -> str:
-    return f"{row['end']} at {row['time_s']:g} s"
-
-
-def balance_paths() -> str:
-    rows = [[f"`{row['run']}`", _end(row), f"{100 * row['off_path_m']:.1f}"] for row in load("balance_paths")]
-    return table(["scenario", "end", "off the path cm"], rows)
-
-
-def balance_bodies() -> str:
-    rows = [[row["run"], *_walked(row), str(row["qp_failures"])] for row in load("balance_bodies")]
-    return table(
-        ["body, commanded", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "failed programs"], rows
-    )
-
-
-def balance_pushes() -> str:
-    return "\n\n".join(_pushes(name) for name in ("balance_pushes", "balance_pushes_60"))
-
-
-def _pushes(name: str) -> str:
-    ends: dict[tuple[str, str], str] = {}
-    for row in load(name):
-        words = row["run"].split()
-        impulse, direction, time = words[1], words[5], words[8]
-        ends[time, direction] = (
-            "up" if row["end"] == "completed" else f"FALLS after {row['time_s'] - float(time):.1f} s"
-        )
-    directions = sorted({direction for _, direction in ends}, key=float)
-    times = sorted({time for time, _ in ends}, key=float)
-    rows = [[f"{time} s", *(ends[time, direction] for direction in directions)] for time in times]
-    survived = sum(end == "up" for end in ends.values())
-    headings = [f"{impulse} N s at", *(f"{direction}°" for direction in directions)]
-    return f"**{survived} of {len(ends)}** pushes of {impulse} N s survived:\n\n" + table(headings, rows)
-
-
-def balance_seeds() -> str:
-    rows = load("balance_seeds")
-    lines = []
-    for speed in sorted({row["run"].split()[1] for row in rows}):
-        walks = [row for row in rows if row["run"].split()[1] == speed]
-        up = [row for row in walks if row["end"] == "completed"]
-        seeds = ", ".join(row["run"].split()[-1] for row in walks)
-        beside = max(abs(row["final_y_m"]) for row in up)
-        speeds = [row["speed_m_s"] for row in up]
-        costs = [row["cost_of_transport"] for row in up]
-        lines.append(
-            [
-                f"{speed} m/s",
-                seeds,
-                f"**{len(up)} of {len(walks)}**",
-                f"{min(speeds):.3f} to {max(speeds):.3f}",
-                f"{100 * beside:.1f}",
-                f"{min(costs):.2f} to {max(costs):.2f}",
-            ]
-        )
-    return table(
-        ["commanded", "seeds", "last 30 s", "speed m/s", "at most beside the line at the end cm", "cost"], lines
-    )
-
-
-def balance_invariance() -> str:
-    rows = [
-        [row["run"], *_walked(row), str(row["steps"]), f"{row['step_s']:.3f}"] for row in load("balance_invariance")
-    ]
-    return table(["", "end", "speed m/s", "largest \\|y\\| cm", "cost of transport", "steps", "step s"], rows)
-
-
 def contact_thesis() -> str:
     return _contact("thesis", {"with the support's": ("{:.3f} m g", "mean_with_support_weights")})
 
@@ -256,11 +174,10 @@ def _contact(walk: str, more: dict[str, tuple[str, ...]]) -> str:
 
 
 PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
-BALANCE = (balance_speeds, balance_paths, balance_bodies, balance_pushes, balance_seeds, balance_invariance)
 PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
     DOCS / "performance.md": PERFORMANCE,
-    DOCS / "balance.md": BALANCE,
     DOCS / "contact.md": (contact_thesis, contact_walk),
+    **{DOCS / page: sections for page, sections in STUDIES.items()},
 }
 
 
@@ -277,5 +194,7 @@ def filled(page: Path) -> str:
 
 
 if __name__ == "__main__":
+    for folder in sys.argv[1:]:
+        keep(Path(folder))
     for page in PAGES:
         write_text(page, filled(page))

@@ -1,0 +1,236 @@
+"""Tables of the book from shipped studies: their rows as Markdown.
+
+`humanwalk study balance_speeds -o runs/balance_speeds`, then `python benchmarks/pages.py runs/balance_speeds`.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from humanwalk.files import make_folder
+from humanwalk.study import journal
+from humanwalk.study.figures import measure_figures
+from humanwalk.study.results import SURVIVAL, Results
+from humanwalk.study.statistics import Level, Survival, levels_of
+from humanwalk.study.study import Study, load_study
+from humanwalk.study.table import ROW, table_columns
+from humanwalk.view.plots.drawing import save
+
+RESULTS = Path(__file__).parent / "results"
+IMAGES = Path(__file__).parents[1] / "docs" / "images" / "studies"
+
+KEPT = (
+    SURVIVAL,
+    "end",
+    "duration_s",
+    "mean_speed_m_s",
+    "path_deviation_m",
+    "cost_of_transport",
+    "steps",
+    "qp_failures",
+    "gait.step_time_s.right",
+    "gait.step_time_s.left",
+    "support_force_rms_N",
+    "support_torque_rms_N_m",
+    "foot_lift_m.right",
+    "foot_lift_m.left",
+)
+"""Columns of a study's table that are kept beside its factors: those of the pages."""
+
+PICTURES = {
+    "push_random": (SURVIVAL,),
+    "thesis_step_height": ("support_force_rms_N", "support_torque_rms_N_m"),
+}
+"""Measures of studies of which the book has pictures."""
+
+FORWARD = "controller.balanced.command.points.0.forward"
+PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
+WALKED = ("end", "speed m/s", "off the path cm", "cost of transport")
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [headings, ["---", *["---:"] * (len(headings) - 1)], *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def balance_speeds() -> str:
+    return study_table(
+        "balance_speeds",
+        ["commanded", *WALKED, "steps", "failed programs"],
+        lambda row: [f"{row[FORWARD]:g} m/s", *_walked(row), str(row["steps"]), str(row["qp_failures"])],
+    )
+
+
+def balance_paths() -> str:
+    return study_table(
+        "balance_paths",
+        ["scenario", "end", "off the path cm"],
+        lambda row: [f"`{row['path']}`", _end(row), f"{100 * row['path_deviation_m']:.1f}"],
+    )
+
+
+def balance_bodies() -> str:
+    return study_table(
+        "balance_bodies",
+        ["body", "commanded", *WALKED, "failed programs"],
+        lambda row: [row["body"], f"{row[FORWARD]:g} m/s", *_walked(row), str(row["qp_failures"])],
+    )
+
+
+def balance_invariance() -> str:
+    def line(row: dict[str, Any]) -> list[str]:
+        step = (row["gait.step_time_s.right"] + row["gait.step_time_s.left"]) / 2.0
+        return [row["settings"], *_walked(row), str(row["steps"]), f"{step:.3f}"]
+
+    return study_table("balance_invariance", ["", *WALKED, "steps", "step s"], line)
+
+
+def balance_seeds() -> str:
+    def lines(rows: list[dict[str, Any]]) -> Iterator[list[str]]:
+        for speed, walks in groupby(rows, key=lambda row: row[FORWARD]):
+            runs = list(walks)
+            up = [row for row in runs if row["survived"]]
+            yield [f"{speed:g} m/s", *_survival(runs)] + [
+                f"{min(values):.{digits}f} to {max(values):.{digits}f}"
+                for values, digits in (
+                    ([row["mean_speed_m_s"] for row in up], 3),
+                    ([100.0 * row["path_deviation_m"] for row in up], 1),
+                    ([row["cost_of_transport"] for row in up], 2),
+                )
+            ]
+
+    headings = ["commanded", "last 30 s", "95 % interval", "speed m/s", "off the path cm", "cost of transport"]
+    return study_section("balance_seeds", lambda rows: table(headings, lines(rows)))
+
+
+def balance_pushes() -> str:
+    return study_section("balance_pushes", _pushes)
+
+
+def balance_pushes_60() -> str:
+    return study_section("balance_pushes_60", _pushes)
+
+
+def _pushes(rows: list[dict[str, Any]]) -> str:
+    ends = {(row[PUSH_TIME], row[PUSH_DIRECTION]): _after_push(row) for row in rows}
+    times, directions = (sorted({key[place] for key in ends}) for place in (0, 1))
+    lines = [[f"{time:.2f} s", *(ends[time, direction] for direction in directions)] for time in times]
+    headings = ["push at", *(f"{math.degrees(direction):.0f}°" for direction in directions)]
+    survived, interval = _survival(rows)
+    return f"{survived} survived ({interval}):\n\n" + table(headings, lines)
+
+
+def _after_push(row: dict[str, Any]) -> str:
+    return "up" if row["survived"] else f"{row['end']} after {row['duration_s'] - row[PUSH_TIME]:.1f} s"
+
+
+def push_random() -> str:
+    def section(rows: list[dict[str, Any]]) -> str:
+        def line(level: Level) -> list[str]:
+            inside = [rows[index] for index in level.rows]
+            ends = [math.degrees(choose(row[PUSH_DIRECTION] for row in inside)) for choose in (min, max)]
+            return [f"{ends[0]:.0f}° to {ends[1]:.0f}°", *_survival(inside)]
+
+        survived, interval = _survival(rows)
+        levels = levels_of([row[PUSH_DIRECTION] for row in rows], 8)
+        return f"{survived} survived ({interval}):\n\n" + table(
+            ["direction", "survived", "95 % interval"], [line(level) for level in levels]
+        )
+
+    return study_section("push_random", section)
+
+
+def thesis_step_height() -> str:
+    def line(row: dict[str, Any]) -> list[str]:
+        lift = 50.0 * (row["foot_lift_m.right"] + row["foot_lift_m.left"])
+        support = [f"{row['support_force_rms_N']:.0f}", f"{row['support_torque_rms_N_m']:.0f}"]
+        height = row["controller.thesis.gait.path.step_height"]
+        return [f"{100 * height:g}", f"{lift:.1f}", *support, f"{row['cost_of_transport']:.2f}", _end(row)]
+
+    headings = ["H cm", "foot lift cm", "support force N", "support torque N m", "cost of transport", "end"]
+    return study_table("thesis_step_height", headings, line)
+
+
+def study_table(name: str, headings: Sequence[str], line: Callable[[dict[str, Any]], list[str]]) -> str:
+    """Table of the rows of a study, a line for each."""
+    return study_section(name, lambda rows: table(headings, map(line, rows)))
+
+
+def study_section(name: str, section: Callable[[list[dict[str, Any]]], str]) -> str:
+    """What `section` makes of the rows of a study, or that the study was not simulated yet."""
+    if not (RESULTS / f"{name}.csv").exists():
+        return f"Not simulated yet: `humanwalk study {name} -o runs/{name}`; `python benchmarks/pages.py runs/{name}`."
+    return section(study_results(name).table.to_pylist())
+
+
+def study_results(name: str) -> Results:
+    """The kept columns of a shipped study's table.
+
+    Raises:
+        ValueError: the study was changed since.
+    """
+    study = load_study(name)
+    table = journal.read(RESULTS / f"{name}.csv", kept_columns(study), len(study.points))
+    points = [{column: study.value_at(point, column) for column in study.columns} for point in study.points]
+    if table.select(list(study.columns)).to_pylist() != points:
+        raise ValueError(f"{name}.csv: rows of another study; run `humanwalk study {name}` and keep its rows")
+    return Results(name, study, table)
+
+
+def keep(folder: Path) -> None:
+    """Copy what the pages need of a finished shipped study into the results, and draw its pictures."""
+    results, name = Results.read(folder), folder.resolve().name
+    study = load_study(name)
+    if results.study.points != study.points or results.table.num_rows < len(study.points):
+        raise ValueError(f"{folder}: not the finished study {name}; run `humanwalk study {name} -o {folder}`")
+    path, columns = RESULTS / f"{name}.csv", kept_columns(study)
+    path.unlink(missing_ok=True)
+    journal.start(path, columns, len(study.points))
+    for row in results.table.to_pylist():
+        journal.append(path, columns, row)
+    make_folder(IMAGES)
+    for measure in PICTURES.get(name, ()):
+        for which, figure in measure_figures(results, measure).items():
+            save(figure, IMAGES / f"{name}_{which}.png")
+
+
+def kept_columns(study: Study) -> dict[str, type]:
+    """Types of the columns of the results of a study: index, factors, KEPT."""
+    return {name: kind for name, kind in table_columns(study).items() if name in (ROW, *study.columns, *KEPT)}
+
+
+def _walked(row: dict[str, Any]) -> list[str]:
+    numbers = (("mean_speed_m_s", 1.0, ".3f"), ("path_deviation_m", 100.0, ".1f"), ("cost_of_transport", 1.0, ".2f"))
+    return [
+        _end(row),
+        *("-" if row[name] is None else format(row[name] * scale, form) for name, scale, form in numbers),
+    ]
+
+
+def _end(row: dict[str, Any]) -> str:
+    return f"{row['end']} at {row['duration_s']:g} s"
+
+
+def _survival(rows: Sequence[dict[str, Any]]) -> tuple[str, str]:
+    found = Survival.of(np.array([row["survived"] for row in rows]))
+    return f"**{found.survived} of {found.runs}**", f"{100 * found.low:.0f} to {100 * found.high:.0f} %"
+
+
+STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
+    "balance.md": (
+        balance_speeds,
+        balance_paths,
+        balance_bodies,
+        balance_pushes,
+        balance_pushes_60,
+        push_random,
+        balance_seeds,
+        balance_invariance,
+    ),
+    "claims.md": (thesis_step_height,),
+}
+"""Sections from studies, by page of the book."""
