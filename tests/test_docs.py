@@ -13,6 +13,7 @@ from humanwalk.choices import CONTROLLERS, BalancedController, PdActuation
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import tag_of
 from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
+from humanwalk.study.tuning import parse_tuning
 
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO = sorted((DOCS / "howto").glob("*.md"))
@@ -32,9 +33,10 @@ def test_the_python_of_a_how_to_runs(page: Any) -> None:
 
 
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
-def test_the_scenarios_of_a_how_to_are_valid(page: Any) -> None:
+def test_the_files_of_a_how_to_are_valid(page: Any) -> None:
     for text in blocks(page, "yaml"):
-        parse_scenario(text)
+        parse = parse_tuning if "\nparameters:" in text else parse_scenario
+        parse(text)
 
 
 def test_the_search_of_the_book_works_from_the_disk_without_a_network() -> None:

@@ -31,7 +31,7 @@ def run(
 ) -> None:
     """Run a tuning: simulate its trials on all cores, and write a row of the table as each ends. Resumes."""
     from humanwalk.run.monitor import caught_signals
-    from humanwalk.study.trials import best
+    from humanwalk.study.trials import best, number
     from humanwalk.study.tune import tune
     from humanwalk.study.tuning import load_tuning
 
@@ -42,14 +42,14 @@ def run(
         workers_client(workers, scheduler) as client,
         counted_progress("trials", estimate_period=3600.0) as progress,
     ):
-        task = progress.add_task("", total=loaded.trials)
+        task = progress.add_task(Path(tuning).stem, total=loaded.trials)
 
         def look(rows: "Mapping[int, Row]") -> None:
             nonlocal done
             done = rows
             found = best(loaded, list(rows.values()))
-            name = f"{Path(tuning).stem}: {describe(loaded, found)}" if found else Path(tuning).stem
-            progress.update(task, completed=len(rows), description=name)
+            state = f"best {found['trial']}, cost {number(found['cost'])}" if found else Path(tuning).stem
+            progress.update(task, completed=len(rows), description=state)
 
         tune(loaded, output, client, on_trial=look, should_stop=lambda: bool(stopped))
     console.print(f"{output}: {len(done)} of {loaded.trials} trials", soft_wrap=True)

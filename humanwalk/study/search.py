@@ -1,8 +1,7 @@
 """The search of a tuning: Optuna's CMA-ES and NSGA-II, asked for a whole batch at a time and told of it in order.
 
 A search is a pure function of the tuning and the scores of its trials: nothing else is stored. To resume, the same
-trials are asked for again, and the stored scores are told instead of new ones. Optuna's own storages are not used: its
-CMA-ES keeps a pickle in them, and whoever loads a pickle executes the code of whoever made it.
+trials are asked for again, and the stored scores are told instead of new ones (docs/decisions/0023).
 """
 
 import logging
