@@ -1,5 +1,6 @@
 """What the commands share: the application, consoles, exit codes, options."""
 
+from importlib.metadata import version
 from typing import IO, Annotated, Any, cast
 
 import typer
@@ -14,11 +15,27 @@ from humanwalk.quantity import ParameterError, printable
 app = typer.Typer(
     help="A full-body human, 44 bodies and 42 joints, that walks in Drake.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     # Rich's markup would take a unit for a tag: [kg].
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
 )
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"humanwalk {version('humanwalk')}, Drake {version('drake')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the versions and exit.")
+    ] = False,
+) -> None:
+    pass
+
 
 MAX_MESSAGE = 2000
 """Longest error message that is printed, in characters."""

@@ -99,15 +99,25 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
         raise typer.Exit(DIFFERS)
 
 
-@app.command(rich_help_panel=SIMULATE)
-def scenarios() -> None:
-    """List the scenarios that come with humanwalk."""
+@app.command(
+    rich_help_panel=SIMULATE,
+    epilog="Examples: humanwalk scenarios  |  humanwalk scenarios --show walk > mine.yaml",
+)
+def scenarios(
+    show: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Print one with all fields, to copy or change.")
+    ] = None,
+) -> None:
+    """List the scenarios that come with humanwalk, or print one of them."""
     from rich.table import Table
 
     from humanwalk.choices import CONTACTS
     from humanwalk.quantity import tag_of
-    from humanwalk.scenario import load_scenario, shipped_scenarios
+    from humanwalk.scenario import dump_scenario, load_scenario, shipped_scenarios
 
+    if show is not None:
+        print(dump_scenario(load_scenario(show)), end="")
+        return
     table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "description")
     for name in shipped_scenarios():
         loaded = load_scenario(name)

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -21,7 +22,7 @@ from humanwalk.cli.main import app, main
 from humanwalk.cli.walk import program, summary_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
-from humanwalk.scenario import load_scenario, shipped_scenarios
+from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
 
 COMMANDS = {name.name or name.callback.__name__ for name in app.registered_commands}
 
@@ -74,7 +75,7 @@ def test_help_lists_every_command(humanwalk: Any) -> None:
     assert [name for name in COMMANDS if name not in out] == []
 
 
-@pytest.mark.parametrize("command", sorted(COMMANDS - {"scenarios"}))
+@pytest.mark.parametrize("command", sorted(COMMANDS))
 def test_help_of_every_command_has_an_example(humanwalk: Any, command: Any) -> None:
     code, out, _ = humanwalk(command, "--help")
     assert code == 0
@@ -112,6 +113,28 @@ def test_scenarios_are_listed_with_their_descriptions(humanwalk: Any) -> None:
     for name in shipped_scenarios():
         (line,) = (line for line in out.splitlines() if line.startswith(f"│ {name} "))
         assert f"{load_scenario(name).controller.commanded_speed or 0.0:g}" in line
+
+
+def test_a_shipped_scenario_is_printed_with_all_fields(humanwalk: Any) -> None:
+    code, out, _ = humanwalk("scenarios", "--show", "walk")
+    assert code == 0
+    assert parse_scenario(out) == load_scenario("walk")
+
+
+def test_versions_are_printed(humanwalk: Any) -> None:
+    assert humanwalk("--version") == (0, f"humanwalk {version('humanwalk')}, Drake {version('drake')}\n", "")
+
+
+def test_short_help_is_the_long_one(humanwalk: Any) -> None:
+    assert humanwalk("walk", "-h") == humanwalk("walk", "--help")
+
+
+def test_a_schema_is_printed_or_written(humanwalk: Any, tmp_path: Path) -> None:
+    code, out, _ = humanwalk("schema", "scenario")
+    assert code == 0
+    assert "seed" in json.loads(out)["$defs"]["scenario.Scenario"]["properties"]
+    assert humanwalk("schema", "scenario", "-o", "s.json")[0] == 0
+    assert json.loads((tmp_path / "s.json").read_text()) == json.loads(out)
 
 
 def test_installed_command_answers() -> None:
