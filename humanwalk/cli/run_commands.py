@@ -10,15 +10,22 @@ import typer
 from humanwalk.cli.common import INTERRUPTED, SHOW, app, console, counted_progress, stdout
 
 RunArgument = Annotated[Path, typer.Argument(help="Folder of a run.")]
-ViewOption = Annotated[str, typer.Option(help="follow, side (from the right), front, or orbit (around the walker).")]
+ViewOption = Annotated[
+    str, typer.Option(help="follow, side (from the right), front, above, or orbit (around the walker).")
+]
 
 
-@app.command(rich_help_panel=SHOW, epilog="Example: humanwalk replay runs/thesis")
-def replay(run: RunArgument, browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True) -> None:
-    """Serve the replay of a run on this machine only, and open it in the browser."""
+@app.command(
+    rich_help_panel=SHOW, epilog="Examples: humanwalk replay runs/thesis  |  humanwalk replay runs/walk runs/brisk"
+)
+def replay(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN [RUN]", help="Folder of a run; two play together.")],
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+) -> None:
+    """Serve the replay of one run, or of two together, on this machine only, and open it in the browser."""
     from humanwalk.view.serve import serve_replay
 
-    serve_replay(run, open_browser=browser, console=console)
+    serve_replay(runs, open_browser=browser, console=console)
 
 
 @app.command(

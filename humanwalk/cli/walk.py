@@ -23,6 +23,7 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
 from humanwalk.view.replay import MAX_TITLE, make_meshcat, static_page
+from humanwalk.view.samples import encode_samples
 
 EXTERNAL_SUPPORT = "EXTERNAL SUPPORT"
 """Shown for every run that had it, even before there is a value."""
@@ -109,7 +110,7 @@ def illustrate(run: Run, replay: Any, *, plots: bool, console: Console) -> None:
         if replay is not None:
             name, description = run.summary["scenario"], run.scenario.description
             title = printable(f"{name}: {description}, {run.summary['duration_s']:g} s", MAX_TITLE)
-            write_text(run.path / REPLAY, static_page(replay, title))
+            write_text(run.path / REPLAY, static_page(replay, title, encode_samples(run.signals, run.scenario.subject)))
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))

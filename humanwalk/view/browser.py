@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from humanwalk.body.skeleton import Vector3
 from humanwalk.extras import missing_package
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.view.replay import content_policy, safe_page
+from humanwalk.view.views import Camera
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -64,10 +64,8 @@ LOADED_DURATION = "() => String(typeof viewer === 'undefined' ? 0 : viewer.anima
 
 # Meshcat's own loop stops: nothing moves or is drawn except when a still is taken, and the canvas is removed from the
 # page, which would be composited once more around it. Software WebGL pays for every triangle, highlight and soft
-# shadow: materials are diffuse, shadows hard and only near the walker, and small objects have fewer triangles. y is up
-# in three.js.
+# shadow: materials are diffuse, shadows hard and only near the walker, and small objects have fewer triangles.
 HOLD = """() => {
-    viewer.animator.pause();
     viewer.animate = () => {};
     window.requestAnimationFrame = () => 0;
     viewer.set_3d_pane_size(innerWidth, innerHeight);
@@ -77,7 +75,7 @@ HOLD = """() => {
     const pixelsPerMeter = innerHeight / 2.4;
     viewer.scene.updateMatrixWorld(true);
     viewer.scene.traverse(object => {
-        if (object.isMesh) {
+        if (object.isMesh && !object.material.isMeshLambertMaterial) {
             const {color, map, transparent, opacity, side, depthTest} = object.material;
             object.material = new THREE.MeshLambertMaterial({color, map, transparent, opacity, side, depthTest});
         }
@@ -100,11 +98,9 @@ HOLD = """() => {
             Object.assign(shadow.camera, {left: -1.6, right: 1.6, bottom: -1.6, top: 1.6}).updateProjectionMatrix();
         }
     });
-    const up = ([x, y, z]) => [x, z, -y];
     window.humanwalkShow = (time, position, target) => {
-        viewer.animator.seek(time);
-        viewer.camera.position.set(...up(position));
-        viewer.controls.target.set(...up(target));
+        picture.show(time);
+        picture.look(position, target);
         viewer.render();
     };
     return true;
@@ -118,18 +114,10 @@ STILL = """([time, position, target, type, quality]) => {
 # Relative to Meshcat's moved scene, which is W; three.js stores matrices by columns.
 POSE = """([time, body]) => {
     humanwalkShow(time, [3, -3, 1], [0, 0, 1]);
-    const scene = viewer.scene_tree.find(["drake"]).object;
-    const object = viewer.scene_tree.find(["drake", "visualizer", "human", ...body]).object;
+    const scene = viewer.scene_tree.find(["run0", "drake"]).object;
+    const object = viewer.scene_tree.find(["run0", "drake", "visualizer", "human", ...body]).object;
     return scene.matrixWorld.clone().invert().multiply(object.matrixWorld).elements;
 }"""
-
-
-@dataclass(frozen=True)
-class Camera:
-    """Camera in W translated to the pelvis: x counts from the pelvis, y from W's, z from the ground there [m]."""
-
-    position: Vector3
-    target: Vector3
 
 
 @dataclass(frozen=True)
@@ -182,7 +170,7 @@ def open_stage(page: Path, width: int, height: int, max_duration: float) -> Iter
     Raises:
         ParameterError: No Playwright, browser or WebGL, with what to install; or a page that cannot be shown.
     """
-    text = safe_page(page)
+    text = safe_page([page])
     with open_browser() as browser:
         yield _hold(browser, text, printable(page), width, height, max_duration)
 

@@ -2,6 +2,7 @@
 
 import threading
 import webbrowser
+from collections.abc import Sequence
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -15,16 +16,17 @@ from humanwalk.view.replay import content_policy, safe_page
 LOCALHOST = "127.0.0.1"
 
 
-def serve_replay(run: Path, *, open_browser: bool, console: Console) -> None:
-    """Serve the replay page of a run folder on this machine only, until Ctrl-C; its address is printed.
+def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console) -> None:
+    """Serve a page with the replays of run folders on this machine only, until Ctrl-C; its address is printed.
 
     Raises:
-        ParameterError: The folder contains no run, or a run without a replay.
+        ParameterError: A folder contains no run, or a run without a replay.
     """
-    page = safe_page(Run.open(run).replay)
+    page = safe_page([Run.open(run).replay for run in runs])
     with replay_server(page.encode()) as server:
         url = f"http://{LOCALHOST}:{server.server_port}/"
-        console.print(f"replay of {printable(run)} at {url} (stop with Ctrl-C)", soft_wrap=True)
+        names = " and ".join(map(printable, runs))
+        console.print(f"replay of {names} at {url} (stop with Ctrl-C)", soft_wrap=True)
         if open_browser:
             # A text browser in this terminal does not return until it is closed.
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()

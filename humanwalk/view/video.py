@@ -11,21 +11,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Literal, get_args
 
 from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.run.fall_picture import replay_duration
 from humanwalk.run.folder import Run
-from humanwalk.view.browser import Camera, open_stage
-from humanwalk.view.replay import CAMERA_POSITION, CAMERA_TARGET
-
-View = Literal["follow", "side", "front", "orbit"]
-
-ORBIT_PERIOD_S = 10.0
-"""Time of the replay for one turn of the `orbit` camera around the walker."""
-ORBIT_RADIUS_M = math.hypot(*CAMERA_POSITION[:2])
+from humanwalk.view.browser import open_stage
+from humanwalk.view.views import VIEWS, View, camera
 
 FORMATS = (".mp4", ".gif", ".webp")
 SIZE_RANGE = (64, 3840)
@@ -62,7 +55,7 @@ class VideoParameters:
 
     Attributes:
         width, height: Size of the picture in pixels; even numbers, which H.264 requires.
-        view: `follow` as the replay page begins, `side` from the right, `front`, or `orbit` around the walker.
+        view: See `humanwalk.view.views`.
         begin, end: Part of the replay [s]; None is its end.
     """
 
@@ -112,8 +105,8 @@ def check_picture(width: int, height: int, view: str) -> None:
         raise ParameterError(
             f"--size {width}x{height}: invalid; allowed: even numbers from {low} to {high}; like 1280x720"
         )
-    if view not in get_args(View):
-        raise ParameterError(f"--view {view}: unknown; allowed: {', '.join(get_args(View))}; choose one of them")
+    if view not in VIEWS:
+        raise ParameterError(f"--view {view}: unknown; allowed: {', '.join(VIEWS)}; choose one of them")
 
 
 def parse_size(text: str) -> tuple[int, int]:
@@ -130,19 +123,6 @@ def parse_times(text: str) -> list[float]:
         return [float(word) for word in text.split(",")]
     except ValueError:
         raise ParameterError(f"--times {text}: invalid; allowed: seconds separated by commas; like 1.0,1.2") from None
-
-
-def camera(view: View, time: float) -> Camera:
-    """Camera of a view at a time of the replay [s]; see `browser.Camera` for its frame."""
-    if view == "side":
-        return Camera((0.0, -4.7, 1.0), (0.0, 0.0, 0.86))
-    if view == "front":
-        return Camera((4.7, 0.0, 1.2), (0.0, 0.0, 0.86))
-    if view == "orbit":
-        angle = math.atan2(CAMERA_POSITION[1], CAMERA_POSITION[0]) + 2.0 * math.pi * time / ORBIT_PERIOD_S
-        x, y = ORBIT_RADIUS_M * math.cos(angle), ORBIT_RADIUS_M * math.sin(angle)
-        return Camera((x, y, CAMERA_POSITION[2]), CAMERA_TARGET)
-    return Camera(CAMERA_POSITION, CAMERA_TARGET)
 
 
 def record_video(

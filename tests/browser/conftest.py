@@ -7,6 +7,7 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 from humanwalk.view.browser import find_browser
 from humanwalk.view.replay import make_meshcat, static_page
+from humanwalk.view.samples import encode_samples
 
 DURATION = 0.5
 """Of the run that is looked at [s]: one step."""
@@ -28,5 +29,6 @@ def short_run(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     outcome = simulate(load_scenario("thesis", {"duration": str(DURATION), "recording.frame_rate": "50"}), meshcat)
     folder = tmp_path_factory.mktemp("runs") / "short"
     folder.mkdir()
-    (folder / REPLAY).write_text(static_page(meshcat), encoding="utf-8")
+    samples = encode_samples(outcome.signals, outcome.scenario.subject)
+    (folder / REPLAY).write_text(static_page(meshcat, "a short walk", samples), encoding="utf-8")
     return outcome.write(folder, "thesis")

@@ -41,12 +41,11 @@ LOOK = """
   (function look() {
     const animator = viewer.animator;
     if (!(animator.duration > 0)) { setTimeout(look, 20); return; }
-    const pelvis = viewer.scene_tree.find(["drake", "visualizer", "human", "Pelvis"]).object;
-    probe.playing = animator.playing;
+    const pelvis = viewer.scene_tree.find(["run0", "drake", "visualizer", "human", "Pelvis"]).object;
+    probe.playing = document.getElementById("player").dataset.playing === "true";
     probe.durations = animator.actions.map(action => action.getClip().duration);
-    animator.pause();
     probe.frames = TIMES.map(time => {
-      animator.seek(time);
+      picture.show(time);
       viewer.render();
       return {recorded: pelvis.position.toArray(), shown: pelvis.getWorldPosition(new THREE.Vector3()).toArray()};
     });

@@ -11,8 +11,8 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.systems.signal import state_columns
-from humanwalk.view.browser import Camera, open_stage
-from humanwalk.view.video import camera
+from humanwalk.view.browser import open_stage
+from humanwalk.view.views import VIEWS, Camera, camera
 
 pytestmark = pytest.mark.browser
 
@@ -51,7 +51,7 @@ def test_the_page_logs_no_error_and_requests_nothing(stage: Any) -> None:
     assert stage.complaints == []
 
 
-@pytest.mark.parametrize("view", ["follow", "side", "front", "orbit"])
+@pytest.mark.parametrize("view", VIEWS)
 def test_every_view_shows_the_walker_before_the_sky(stage: Any, tmp_path: Path, view: Any) -> None:
     def pixels(look: Any) -> Any:
         path = tmp_path / "still.png"

@@ -15,7 +15,7 @@ import pytest
 from humanwalk.quantity import ParameterError
 from humanwalk.view.browser import open_browser, open_stage
 from humanwalk.view.replay import RECORDING, RECORDING_TAG
-from humanwalk.view.video import camera
+from humanwalk.view.views import camera
 
 pytestmark = pytest.mark.browser
 

@@ -6,7 +6,7 @@ import pytest
 from humanwalk.run.folder import REPLAY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
-from humanwalk.view.replay import replay_page
+from humanwalk.view.replay import Recording, replay_page
 
 
 @pytest.fixture(scope="session")
@@ -14,7 +14,7 @@ def short_run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run of 0.02 s with a replay page that contains no motion."""
     folder = tmp_path_factory.mktemp("short") / "run"
     simulate(load_scenario("thesis", {"duration": "0.02"})).save(folder)
-    (folder / REPLAY).write_text(replay_page(["AAAA"], "a walk"), encoding="utf-8")
+    (folder / REPLAY).write_text(replay_page([Recording("a walk", ["AAAA"])]), encoding="utf-8")
     return folder
 
 

@@ -2,6 +2,7 @@ import _thread
 import base64
 import hashlib
 import io
+import math
 import os
 import re
 import signal
@@ -10,12 +11,13 @@ import threading
 import urllib.error
 import urllib.request
 import webbrowser
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pydrake.geometry import Meshcat
 from pydrake.systems.analysis import Simulator
@@ -29,7 +31,8 @@ from humanwalk.run.folder import REPLAY
 from humanwalk.scenario import load_scenario
 from humanwalk.sides import Side
 from humanwalk.terrain import Plane
-from humanwalk.view.replay import make_meshcat, replay_page, safe_page, static_page
+from humanwalk.view.replay import MAX_RUNS, Recording, make_meshcat, read_recording, replay_page, safe_page, static_page
+from humanwalk.view.samples import CHANNELS
 from humanwalk.view.serve import replay_server, serve_replay
 
 FRAME_RATE = 32.0
@@ -39,6 +42,13 @@ DURATION = 0.25
 LISTENING = "0A"
 LOOPBACK = {"0100007F", "00000000000000000000000001000000"}
 TITLE = 'a "walk" & <more>'
+
+
+def numbers(times: Sequence[float]) -> str:
+    """Samples at times, with zeros in all other channels."""
+    samples = np.zeros((len(times), len(CHANNELS)), "<f4")
+    samples[:, 0] = times
+    return base64.b64encode(samples.tobytes()).decode()
 
 
 class Elements(HTMLParser):
@@ -123,7 +133,7 @@ def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements: El
     directives = dict(directive.strip().split(" ", 1) for directive in policy.split(";"))
     scripts = re.findall(r'<script(?: type="text/javascript")?>(.*?)</script>', page, re.DOTALL)
     hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
-    assert len(hashes) == 3
+    assert len(hashes) == 5
     assert directives.pop("script-src").split() == [f"'sha256-{digest}'" for digest in hashes]
     assert directives == {
         "default-src": "'none'",
@@ -236,10 +246,10 @@ def test_replay_opens_the_page_and_ends_at_ctrl_c(run: Path, monkeypatch: pytest
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     output = io.StringIO()
     try:
-        serve_replay(run, open_browser=True, console=Console(file=output))
+        serve_replay([run], open_browser=True, console=Console(file=output))
     finally:
         signal.signal(signal.SIGINT, before)
-    assert seen == [replay_page(["AAAA"], "a walk")]
+    assert seen == [replay_page([Recording("a walk", ["AAAA"])])]
     assert re.search(r"http://127\.0\.0\.1:\d+/", output.getvalue())
 
 
@@ -250,32 +260,38 @@ def test_replay_does_not_open_the_browser_with_no_browser(run: Path, monkeypatch
     opened = []
     monkeypatch.setattr(webbrowser, "open", opened.append)
     monkeypatch.setattr("humanwalk.view.serve.ThreadingHTTPServer.serve_forever", press_ctrl_c)
-    serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
+    serve_replay([run], open_browser=False, console=Console(file=io.StringIO()))
     assert opened == []
 
 
 def test_run_without_replay_produces_an_error_with_the_fix(run: Path) -> None:
     (run / REPLAY).unlink()
     with pytest.raises(ParameterError, match=r"no replay\.html; allowed: .*; walk again without --no-replay"):
-        serve_replay(run, open_browser=False, console=Console(file=io.StringIO()))
+        serve_replay([run], open_browser=False, console=Console(file=io.StringIO()))
 
 
 def test_folder_without_run_produces_an_error(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="no run"):
-        serve_replay(tmp_path, open_browser=False, console=Console(file=io.StringIO()))
+        serve_replay([tmp_path], open_browser=False, console=Console(file=io.StringIO()))
 
 
 def test_safe_page_of_our_page_is_the_same_page(page: str, tmp_path: Path) -> None:
     (tmp_path / REPLAY).write_text(page, encoding="utf-8")
-    assert safe_page(tmp_path / REPLAY) == page
+    assert safe_page([tmp_path / REPLAY]) == page
 
 
 def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_path: Path) -> None:
     foreign = "<script>alert(1)</script><img src=http://evil.example/x>"
     title = "&lt;b onload=alert(2)&gt;\x1b]0;evil\x07"
-    page = replay_page(["AAAA", "BBBB"], "TITLE").replace("TITLE", title).replace("<body>", f"<body>{foreign}")
+    page = (
+        replay_page([Recording("TITLE", ["AAAA", "BBBB"])])
+        .replace("TITLE", title)
+        .replace("<body>", f"<body>{foreign}")
+    )
     (tmp_path / REPLAY).write_text(page.replace("viewer.handle_command =", "evil ="), encoding="utf-8")
-    assert safe_page(tmp_path / REPLAY) == replay_page(["AAAA", "BBBB"], r"<b onload=alert(2)>\x1b]0;evil\x07")
+    assert safe_page([tmp_path / REPLAY]) == replay_page(
+        [Recording(r"<b onload=alert(2)>\x1b]0;evil\x07", ["AAAA", "BBBB"])]
+    )
 
 
 @pytest.mark.parametrize(
@@ -283,13 +299,40 @@ def test_safe_page_contains_nothing_of_another_page_but_recording_and_title(tmp_
     [
         "",
         "<html>",
-        '<script type="application/json" id="recording">[]</script>',
-        '<script type="application/json" id="recording">["<b>"]</script>',
-        '<script type="application/json" id="recording">["A" "B"]</script>',
-        '<script type="application/json" id="recording">["A"</script>',
+        '<script type="application/json" class="recording">[]</script>',
+        '<script type="application/json" class="recording">["<b>"]</script>',
+        '<script type="application/json" class="recording">["A" "B"]</script>',
+        '<script type="application/json" class="recording">["A"</script>',
     ],
 )
 def test_page_without_recording_produces_a_one_line_error(page: str, tmp_path: Path) -> None:
     (tmp_path / REPLAY).write_text(page)
     with pytest.raises(ParameterError, match="no recording"):
-        safe_page(tmp_path / REPLAY)
+        safe_page([tmp_path / REPLAY])
+
+
+def test_page_of_two_runs_has_both_recordings_and_titles(tmp_path: Path) -> None:
+    pages = [tmp_path / name for name in ("one.html", "two.html")]
+    runs = [Recording("<one>", ["AAAA"]), Recording("two", ["BBBB"], numbers([0.0, 0.1]))]
+    for path, run in zip(pages, runs, strict=True):
+        path.write_text(replay_page([run]), encoding="utf-8")
+    assert [read_recording(path) for path in pages] == runs
+    both = safe_page(pages)
+    assert both == replay_page(runs)
+    assert Elements(both).text["title"].strip() == "<one> | two"
+    labels = [attributes["content"] for tag, attributes in Elements(both).found if attributes.get("name") == "run"]
+    assert labels == ["<one>", "two"]
+
+
+@pytest.mark.parametrize("number", [0, MAX_RUNS + 1])
+def test_other_numbers_of_runs_are_refused(run: Path, number: int) -> None:
+    with pytest.raises(ParameterError, match=rf"{number} runs; allowed: 1 to {MAX_RUNS}"):
+        serve_replay([run] * number, open_browser=False, console=Console(file=io.StringIO()))
+
+
+@pytest.mark.parametrize("samples", ["AAAA", "A", numbers([1e10]), numbers([1.0, 1.0]), numbers([math.nan])])
+def test_page_with_wrong_signals_produces_a_one_line_error(samples: str, tmp_path: Path) -> None:
+    (tmp_path / REPLAY).write_text(replay_page([Recording("a walk", ["AAAA"], samples)]), encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"replay\.html: its signals are not") as error:
+        safe_page([tmp_path / REPLAY])
+    assert "\n" not in str(error.value)

@@ -9,7 +9,8 @@ import pytest
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import REPLAY
 from humanwalk.view.browser import find_browser, has_sandbox, open_browser
-from humanwalk.view.video import VideoParameters, camera, find_ffmpeg, parse_size, parse_times, record_video
+from humanwalk.view.video import VideoParameters, find_ffmpeg, parse_size, parse_times, record_video
+from humanwalk.view.views import camera
 
 
 @pytest.mark.parametrize(
@@ -41,7 +42,7 @@ def test_frames_are_evenly_spaced_and_stay_in_the_selected_part(
         ({"speed": math.nan}, "video.speed: nan .*allowed: 0.02 to 50"),
         ({"width": 1281}, "--size 1281x720: .*even numbers from 64 to 3840"),
         ({"height": 10}, "--size 1280x10: .*even numbers from 64 to 3840"),
-        ({"view": "top"}, "--view top: unknown; allowed: follow, side, front, orbit"),
+        ({"view": "top"}, "--view top: unknown; allowed: follow, side, front, above, orbit"),
     ],
 )
 def test_invalid_parameters_produce_a_one_line_error(arguments: Any, message: str) -> None:

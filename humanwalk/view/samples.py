@@ -1,0 +1,91 @@
+"""Signals inside a replay page: a fixed list of numbers per sample, so that nothing of a page has to be trusted."""
+
+import base64
+import binascii
+
+import numpy as np
+import pyarrow as pa
+
+from humanwalk.body import REFERENCE_STATURE, SIDES
+from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.measures.events import CONTACT_ON_N
+from humanwalk.measures.human_likeness import JOINTS, joint_signal
+from humanwalk.measures.signals import TIME, matrix
+from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError
+from humanwalk.systems.signal import state_columns
+
+CHANNELS = (
+    "time",
+    *(f"{side} {name}" for side in SIDES for name in ("vertical", "fore-aft", "cop x", "cop y", *JOINTS)),
+)
+"""Numbers of a sample: time [s]; for each foot the force [N], the center of pressure [foot lengths], and angles [deg].
+
+The center of pressure is measured from the heel in the direction of the foot, and to the left of its middle. Numbers
+that do not exist, such as the center of pressure of an unloaded foot, are not a number.
+"""
+
+HEEL, TOE = SOLE_PARTS[0].x[0], SOLE_PARTS[-1].x[1]
+"""Ends of the sole of the reference human, from the ankle [m]."""
+
+SOLE_OUTLINE = [
+    [round(value / (TOE - HEEL), 3) for value in (part.x[0] - HEEL, part.x[1] - HEEL, part.width)]
+    for part in SOLE_PARTS
+]
+"""Rear end, front end and width of the parts of a sole [foot lengths]."""
+
+MAX_MAGNITUDE = 1e9
+
+
+def encode_samples(signals: pa.Table, subject: Subject) -> str:
+    """The channels of a run as text: base64 of 32-bit floats, sample after sample."""
+    time = signals[TIME].to_numpy()
+    samples = np.full((time.size, len(CHANNELS)), np.nan)
+    column = {name: samples[:, index] for index, name in enumerate(CHANNELS)}
+    column["time"][:] = time
+    for side in SIDES:
+        for joint in JOINTS:
+            column[f"{side} {joint}"][:] = np.degrees(joint_signal(signals, joint, side, "angle_rad"))
+    if f"{SIDES[0].lower()}_foot.force_z_N" in signals.column_names:
+        cop = _centers_of_pressure(signals, subject)
+        for place, side in enumerate(SIDES):
+            force = matrix(signals, [f"{side.lower()}_foot.force_{axis}_N" for axis in "xz"])
+            column[f"{side} fore-aft"][:], column[f"{side} vertical"][:] = force.T
+            loaded = force[:, 1] >= CONTACT_ON_N
+            column[f"{side} cop x"][loaded] = cop[loaded, place, 0]
+            column[f"{side} cop y"][loaded] = cop[loaded, place, 1]
+    return base64.b64encode(samples.astype("<f4").tobytes()).decode()
+
+
+def require_samples(text: str) -> None:
+    """Raise ParameterError unless the text encodes samples: times that increase, and numbers that are not too large."""
+    try:
+        numbers = np.frombuffer(base64.b64decode(text, validate=True), "<f4")
+        samples = numbers.reshape(-1, len(CHANNELS))
+    except (binascii.Error, ValueError):
+        raise ParameterError("its signals are not whole samples") from None
+    with np.errstate(invalid="ignore"):
+        bounded = np.isnan(samples) | (np.abs(samples) <= MAX_MAGNITUDE)
+        increasing = np.diff(samples[:, 0]) > 0.0
+    if not bounded.all() or not increasing.all() or not np.isfinite(samples[:, 0]).all():
+        raise ParameterError("its signals are not finite, or not in the order of time")
+
+
+def _centers_of_pressure(signals: pa.Table, subject: Subject) -> Array:
+    """Centers of pressure in the frames of the soles [foot lengths], shape (rows, 2 feet, 2)."""
+    plant = kinematics_plant(subject)
+    context = plant.CreateDefaultContext()
+    soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
+    positions = matrix(signals, state_columns(JointMap.of(plant)))[:, : plant.num_positions()]
+    points = [matrix(signals, [f"{side.lower()}_foot.cop_{axis}_m" for axis in "xyz"]) for side in SIDES]
+    scale = subject.stature / REFERENCE_STATURE
+    cop = np.empty((len(positions), len(SIDES), 2))
+    for row, q in enumerate(positions):
+        plant.SetPositions(context, q)
+        for place, sole in enumerate(soles):
+            p_SQ = sole.CalcPoseInWorld(context).inverse() @ points[place][row]
+            cop[row, place] = p_SQ[:2]
+    return np.asarray((cop - np.array((HEEL * scale, 0.0))) / ((TOE - HEEL) * scale))
