@@ -28,23 +28,22 @@ if TYPE_CHECKING:
     epilog="Examples: humanwalk model --mass 55 --stature 1.60 -o small.sdf  |  humanwalk model -o human.xml",
 )
 def model(
-    output: Annotated[Path, typer.Option("--output", "-o", help="SDF file to write; MJCF if its suffix is .xml.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="File to write; .sdf, .urdf, .xml (MJCF) or .osim by its suffix.")
+    ],
     mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
     stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
     look: LookOption = "person",
 ) -> None:
-    """Write the human as an SDF model for Drake, or as an MJCF model for MuJoCo."""
-    from humanwalk.body.mjcf import to_mjcf
+    """Write the human as a model: SDF or URDF for Drake, MJCF for MuJoCo, OSIM for OpenSim."""
+    from humanwalk.body.model_file import write_model
     from humanwalk.body.plant import Subject
-    from humanwalk.body.sdf import to_sdf
-    from humanwalk.files import write_text
     from humanwalk.quantity import check
 
     require_look(look)
     subject = Subject(mass=mass, stature=stature)
     check(subject, "subject")
-    write = to_mjcf if output.suffix == ".xml" else to_sdf
-    write_text(output, write(subject.skeleton, look))  # type: ignore[arg-type]
+    write_model(output, subject.skeleton, look)  # type: ignore[arg-type]
     console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m", soft_wrap=True)
 
 

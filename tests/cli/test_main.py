@@ -458,6 +458,19 @@ def test_model_in_a_missing_folder_is_refused(refusal: Any) -> None:
     assert "No such file or directory" in refusal("model", "-o", "none/x.sdf")
 
 
+@pytest.mark.parametrize("name", ["human.txt", "human", "human.sdf.gz"])
+def test_model_of_unknown_format_is_refused(refusal: Any, name: str) -> None:
+    assert "unknown model format; allowed: .sdf, .urdf, .xml, .osim" in refusal("model", "-o", name)
+
+
+@pytest.mark.parametrize(
+    ("name", "root"), [("x.sdf", "sdf"), ("x.URDF", "robot"), ("x.xml", "mujoco"), ("x.osim", "OpenSimDocument")]
+)
+def test_model_has_the_format_of_its_suffix(humanwalk: Any, tmp_path: Path, name: str, root: str) -> None:
+    assert humanwalk("model", "-o", name)[0] == 0
+    assert ElementTree.parse(tmp_path / name).getroot().tag == root
+
+
 needs_dot = pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz' dot is not installed")
 # pydot calls pyparsing by names of old.
 old_pydot = pytest.mark.filterwarnings("ignore:.*deprecated - use:DeprecationWarning")
