@@ -7,10 +7,15 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 
-from humanwalk.body.joint_map import JointMap
+from humanwalk.body.joint_map import JointMap, base_first_mass_matrix
 from humanwalk.choices.world import World
+from humanwalk.control.adaptive_feedforward import AdaptationParameters, require_passive
+from humanwalk.control.integral_action import require_stable_integral
 from humanwalk.control.pd_control import PD_LAWS, PdLaw, install_gains
 from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError, quantity, tag_of
+from humanwalk.systems.adaptive_feedforward import AdaptiveFeedforward
+from humanwalk.systems.integral_action import IntegralAction
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 
@@ -57,18 +62,78 @@ class PdActuation:
         limits = JointMap.of(world.model).effort_limits
         if self.effort_limits == "none":
             limits = np.full_like(limits, np.inf)
-        bank = world.add(
-            "actuators",
-            PdActuatorBank(plant, world.kp, world.kd, self.law, limits),
-            state=world.state,
-            net_actuation=plant.get_net_actuation_output_port(),
-        )
+        try:
+            bank = world.add(
+                "actuators",
+                PdActuatorBank(plant, world.kp, world.kd, self.law, limits),
+                state=world.state,
+                net_actuation=plant.get_net_actuation_output_port(),
+            )
+            self.add_correction(world)
+        except ParameterError as error:
+            raise ParameterError(f"actuation.{tag_of(ACTUATIONS, self)}.{error}") from None
         builder.Connect(bank.GetOutputPort("actuation"), plant.get_actuation_input_port())
         if PD_LAWS[self.law].takes_desired_state:
             builder.Connect(
                 bank.GetOutputPort("plant_desired_state"), plant.get_desired_state_input_port(world.instance)
             )
 
+    def add_correction(self, world: World) -> None:
+        """Add and connect the system that corrects the PD law of `actuators`; the PD law alone has none.
 
-ACTUATIONS: dict[str, type[Actuation]] = {"pd": PdActuation}
+        Raises:
+            ParameterError: the correction is not possible; the message begins with the name of a field.
+        """
+
+
+@dataclass(frozen=True)
+class PidActuation(PdActuation):
+    """A PID controller for every joint: the PD law and an integral of the angle error that stops at the effort limits.
+
+    Joints without stiffness have no integral action either: those that the balanced controller moves by torque.
+    """
+
+    integral_time: float = quantity(1.0, "s", 0.01, 100.0)
+    """T_i = kp / ki: under a constant error the integral torque rises by the torque of the stiffness in this time.
+    Longer than a gait cycle (0.6 s in the thesis' walk): shorter times amplify the periodic error."""
+
+    def add_correction(self, world: World) -> None:
+        require_stable_integral(world.plant, world.kp, world.kd, self.law, "integral_time", self.integral_time)
+        _add_correction(world, "integral_action", IntegralAction(world.plant, world.kp / self.integral_time))
+
+
+@dataclass(frozen=True)
+class AdaptiveActuation(PdActuation, AdaptationParameters):
+    """The PD law and a feedforward of the estimated inertia and load of every joint (Slotine and Li, 1987).
+
+    Joints without stiffness do not adapt: those that the balanced controller moves by torque.
+    """
+
+    def add_correction(self, world: World) -> None:
+        plant, kp, kd = world.plant, world.kp, world.kd
+        inertia = base_first_mass_matrix(plant, plant.CreateDefaultContext()).diagonal()[-kp.size :]
+        require_passive(kd, inertia, kp > 0, self.error_rate)
+        # At a constant acceleration the adaptation is integral action, to which inertia and load each add up to kp / T.
+        require_stable_integral(
+            plant, kp, kd, self.law, "adaptation_time", self.adaptation_time, gain=2.0, rate_time=1.0 / self.error_rate
+        )
+        # Also where the actuators have no limits: no joint of a person carries more.
+        max_load = JointMap.of(world.model).effort_limits
+        _add_correction(world, "adaptive_feedforward", AdaptiveFeedforward(plant, kp, inertia, max_load, self))
+
+
+def _add_correction(world: World, name: str, system: IntegralAction | AdaptiveFeedforward) -> None:
+    """Add a system between the desired state of `actuators` and its correction."""
+    world.add(
+        name,
+        system,
+        desired_state=world.port("actuators", "held_desired_state"),
+        saturated=world.port("actuators", "saturated"),
+        state=world.state,
+    )
+    bank = world.builder.GetSubsystemByName("actuators")
+    world.builder.Connect(system.GetOutputPort("torque"), bank.GetInputPort("correction"))
+
+
+ACTUATIONS: dict[str, type[Actuation]] = {"pd": PdActuation, "pid": PidActuation, "adaptive": AdaptiveActuation}
 """The actuations that a scenario can name."""

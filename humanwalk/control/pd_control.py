@@ -155,6 +155,6 @@ def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> N
     stable = largest_pd_step(base_first_mass_matrix(plant, plant.CreateDefaultContext()), kp, kd, law)
     if plant.time_step() > stable:
         raise ParameterError(
-            f"actuation.pd.law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
+            f"law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "
             f"{round_down(stable):g} s with these gains; use law: implicit, softer gains, or that step"
         )

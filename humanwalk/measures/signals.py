@@ -13,6 +13,7 @@ from humanwalk.quantity import ParameterError
 TIME = "time_s"
 
 UNITS = {
+    "kg_m2": "kg m2",
     "N_m": "N m",
     "rad_s": "rad/s",
     "m_s": "m/s",

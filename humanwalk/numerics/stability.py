@@ -41,3 +41,9 @@ def round_down(step: float) -> float:
     """Round a step [s] down to two digits, so that the step in an error message is accepted."""
     digit = 10.0 ** (np.floor(np.log10(step)) - 1)
     return float(digit * np.floor(step / digit * (1 + 1e-12)))
+
+
+def round_up(value: float) -> float:
+    """Round a positive value up to two digits, so that the lower bound in an error message is accepted."""
+    digit = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return float(digit * np.ceil(value / digit * (1 - 1e-12)))

@@ -14,7 +14,7 @@ from humanwalk.systems.signal import Signal
 
 
 class PdActuatorBank(LeafSystem):
-    """tau = kp (q_d - q) + kd (v_d - v) + feedforward for each joint, in actuator order.
+    """tau = kp (q_d - q) + kd (v_d - v) + feedforward + correction for each joint, in actuator order.
 
     Desired states arrive as samples. The desired state follows the cubic from the previous sample to the present one;
     after the present sample it is held to first order.
@@ -29,15 +29,16 @@ class PdActuatorBank(LeafSystem):
         previous_state, previous_time: the sample before. Optional; default: the first-order hold.
         state: plant state [q; v].
         net_actuation: (n) torque that the plant's actuators deliver [N m].
-        feedforward: (n) torque added to the law [N m]. Optional; default: zero.
+        feedforward: (n) torque that the controller adds to the law [N m]. Optional; default: zero.
+        correction: (n) torque that integral action or adaptation adds to the law [N m]. Optional; default: zero.
 
     Outputs:
         held_desired_state: (2n) the desired state now.
         plant_desired_state: (2n) the desired state at the end of the plant's step, for its desired_state port; only
             with the implicit law.
-        actuation: (n) torque for the plant's actuation port [N m]. Implicit law: the feedforward, and kd v_d for a
-            continuous plant. Else: the law clipped to the effort limits, plus kd v with the semi-implicit law, whose
-            damping the plant subtracts.
+        actuation: (n) torque for the plant's actuation port [N m]. Implicit law: feedforward and correction, and
+            kd v_d for a continuous plant. Else: the law clipped to the effort limits, plus kd v with the semi-implicit
+            law, whose damping the plant subtracts.
         torque: (n) torque of the law on the joints [N m].
         saturated: (n) 1 where the law reaches the effort limit, else 0.
     """
@@ -73,22 +74,22 @@ class PdActuatorBank(LeafSystem):
         self._previous_time = self.DeclareVectorInputPort("previous_time", 1)
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._net_actuation = self.DeclareVectorInputPort("net_actuation", n)
-        self._feedforward = self.DeclareVectorInputPort("feedforward", n)
+        self._added = [self.DeclareVectorInputPort(name, n) for name in ("feedforward", "correction")]
 
         held = {self.time_ticket()} | self._tickets(
             (self._desired, self._sample_time, self._previous, self._previous_time)
         )
-        feedforward, state = self._tickets([self._feedforward]), self._tickets([self._state])
+        added, state = self._tickets(self._added), self._tickets([self._state])
         self._held = self.DeclareVectorOutputPort("held_desired_state", 2 * n, self._calc_held, held)
         if PD_LAWS[law].takes_desired_state:
             self.DeclareVectorOutputPort("plant_desired_state", 2 * n, self._calc_plant_desired, held)
-            self.DeclareVectorOutputPort("actuation", n, self._calc_feedforward, held | feedforward)
+            self.DeclareVectorOutputPort("actuation", n, self._calc_added, held | added)
         else:
-            self.DeclareVectorOutputPort("actuation", n, self._calc_actuation, held | feedforward | state)
+            self.DeclareVectorOutputPort("actuation", n, self._calc_actuation, held | added | state)
         torque = self.DeclareVectorOutputPort(
             "torque", n, self._calc_torque, state | self._tickets([self._net_actuation])
         )
-        saturated = self.DeclareVectorOutputPort("saturated", n, self._calc_saturated, held | feedforward | state)
+        saturated = self.DeclareVectorOutputPort("saturated", n, self._calc_saturated, held | added | state)
 
         angles = tuple(f"{name}.desired_angle_rad" for name in joints.names)
         rates = tuple(f"{name}.desired_velocity_rad_s" for name in joints.names)
@@ -115,14 +116,16 @@ class PdActuatorBank(LeafSystem):
         held = self._held.Eval(context)
         return held[: self._kp.size], held[self._kp.size :]
 
-    def _feedforward_now(self, context: Context) -> Array | float:
-        return self._feedforward.Eval(context) if self._feedforward.HasValue(context) else 0.0
+    def _added_now(self, context: Context) -> Array | float:
+        """Torque added to the law by the inputs that are connected, shape (n,) or zero."""
+        torque: Array | float = sum(port.Eval(context) for port in self._added if port.HasValue(context))
+        return torque
 
     def _law(self, context: Context) -> tuple[Array, Array]:
         """The law without limits and the torque that the damping of the plant's joints takes from it, shape (n,)."""
         state = self._state.Eval(context)
         q, v = state[self._q], state[self._v]
-        tau = pd_torque(q, v, *self._desired_now(context), self._kp, self._kd) + self._feedforward_now(context)
+        tau = pd_torque(q, v, *self._desired_now(context), self._kp, self._kd) + self._added_now(context)
         return tau, self._joint_damping * v
 
     def _calc_actuation(self, context: Context, output: BasicVector) -> None:
@@ -133,10 +136,10 @@ class PdActuatorBank(LeafSystem):
         q_d, v_d = self._desired_now(context)
         output.SetFromVector(np.concatenate((q_d + self._time_step * v_d, v_d if self._time_step > 0 else 0 * v_d)))
 
-    def _calc_feedforward(self, context: Context, output: BasicVector) -> None:
+    def _calc_added(self, context: Context, output: BasicVector) -> None:
         _, v_d = self._desired_now(context)
         rate_torque = 0 * v_d if self._time_step > 0 else self._kd * v_d
-        output.SetFromVector(self._feedforward_now(context) + rate_torque)
+        output.SetFromVector(self._added_now(context) + rate_torque)
 
     def _calc_torque(self, context: Context, output: BasicVector) -> None:
         damping_in_plant = self._joint_damping * self._state.Eval(context)[self._v]

@@ -98,8 +98,10 @@ class Walked:
         ((LEVELS,), {"support_wrench": 6, "foot_shift": 12, "alpha": 4}),
         ((CENIC,), {"support_wrench": 6}),
         ((EXPLICIT,), {"support_wrench": 6}),
+        (({"actuation": "pid"},), {"support_wrench": 6, "integral_torque": N}),
+        (({"actuation": "adaptive"},), {"support_wrench": 6, "estimates": 2 * N}),
     ],
-    ids=["thesis", "unsupported", "levels", "cenic", "explicit"],
+    ids=["thesis", "unsupported", "levels", "cenic", "explicit", "pid", "adaptive"],
 )
 def test_exported_ports_are_those_of_the_docstring(changes: tuple[dict[str, str], ...], more: dict[str, Any]) -> None:
     walker = make_walker(thesis(*changes))

@@ -90,6 +90,7 @@ def test_ports(implicit: PdActuatorBank, explicit: PdActuatorBank, discrete_plan
         "state": discrete_plant.num_multibody_states(),
         "net_actuation": N,
         "feedforward": N,
+        "correction": N,
     }
     for bank in (implicit, explicit):
         assert {
@@ -153,6 +154,19 @@ def test_explicit_torque_is_the_formula_for_every_joint_within_its_limit(
         assert actual[i] == pytest.approx(min(max(tau, -limit), limit), rel=1e-9, abs=1e-9), name
 
 
+def test_the_correction_is_inside_the_effort_limits(
+    explicit: PdActuatorBank, plant: MultibodyPlant, joints: JointMap
+) -> None:
+    """Feedforward and correction add up before the limits: one cannot exceed them, both can cancel."""
+    at_rest = {"desired_state": np.zeros(2 * N), "state": np.zeros(plant.num_multibody_states())}
+    limits = joints.effort_limits
+    for feedforward, correction, expected in ((0.6, 0.3, 0.9), (0.6, 0.6, 1.0), (2.0, -1.5, 0.5)):
+        added = {"feedforward": feedforward * limits, "correction": correction * limits}
+        context = context_with(explicit, **at_rest, **added)
+        np.testing.assert_allclose(explicit.GetOutputPort("actuation").Eval(context), expected * limits)
+        np.testing.assert_array_equal(explicit.GetOutputPort("saturated").Eval(context), float(expected == 1.0))
+
+
 def test_feedforward_defaults_to_zero(explicit: PdActuatorBank, plant: MultibodyPlant) -> None:
     state = np.zeros(plant.num_multibody_states())
     context = context_with(explicit, desired_state=np.zeros(2 * N), state=state)
@@ -172,9 +186,11 @@ def test_joints_at_the_effort_limit_are_reported(
     assert set(saturated) == {0.0, 1.0}
 
 
-def test_the_implicit_law_passes_the_feedforward(implicit: PdActuatorBank) -> None:
+@pytest.mark.parametrize("added", [{"feedforward": 1.0}, {"correction": 1.0}, {"feedforward": 3.0, "correction": -2.0}])
+def test_the_implicit_law_passes_feedforward_and_correction(implicit: PdActuatorBank, added: dict[str, float]) -> None:
     tau = np.arange(float(N))
-    context = context_with(implicit, desired_state=np.ones(2 * N), feedforward=tau)
+    torques = {name: share * tau for name, share in added.items()}
+    context = context_with(implicit, desired_state=np.ones(2 * N), **torques)
     np.testing.assert_allclose(implicit.GetOutputPort("actuation").Eval(context), tau, atol=1e-12)
     context = context_with(implicit, desired_state=np.ones(2 * N))
     np.testing.assert_allclose(implicit.GetOutputPort("actuation").Eval(context), 0.0, atol=1e-12)
@@ -372,7 +388,7 @@ def named_step(kp: Array, kd: Array) -> float:
     with pytest.raises(ParameterError, match=r"explicit is unstable at time_step 0\.01 s") as refusal:
         PdActuatorBank(plant, kp, kd, law="explicit")
     message = str(refusal.value)
-    assert message.startswith("actuation.pd.law: ")
+    assert message.startswith("law: ")
     assert "\n" not in message
     assert "use law: implicit" in message
     return float(message.split("steps up to ")[1].split(" s")[0])
