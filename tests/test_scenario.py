@@ -419,7 +419,11 @@ def test_every_number_is_refused_just_outside_its_range(key: str) -> None:
         ("controller: {balanced: {gait: {}}}", "controller.balanced.gait", "controller.thesis"),
         ("controller: {thesis: {command: {}}}", "controller.thesis.command", "controller.balanced"),
         ("contact: {point: {normal_stiffness: 1e7}}", "contact.point.normal_stiffness", "contact.asperity"),
-        ("simulation: {effort_limits: none}", "simulation.effort_limits", "actuation.pd or actuation.pid or actuation.adaptive"),
+        (
+            "simulation: {effort_limits: none}",
+            "simulation.effort_limits",
+            "actuation.pd or actuation.pid or actuation.adaptive",
+        ),
         ("controller: {balanced: {seed: 3}}", "controller.balanced.seed", "the top of the file"),
     ],
 )

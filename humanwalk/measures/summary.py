@@ -1,6 +1,7 @@
 """The summary of a run: speed, lift, steps, support, torques, tracking and cost; each measure has one definition."""
 
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any, TypedDict
 
@@ -42,6 +43,8 @@ class Summary(TypedDict):
     support_force_rms_N: float | None
     support_torque_rms_N_m: float | None
     pelvis_tracking_rms_m: float | None
+    torque_rms_N_m: float | None
+    tracking_error_rms_rad: float | None
     peak_torque_N_m: dict[str, float | None]
     saturated_share: dict[str, float | None]
     tracking_error_rad: dict[str, float | None]
@@ -100,9 +103,11 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "support_force_rms_N": _rms_norm(matrix(signals, forces), steady) if supported else 0.0,
         "support_torque_rms_N_m": _rms_norm(matrix(signals, torques), steady) if supported else 0.0,
         "pelvis_tracking_rms_m": pelvis_tracking(signals, steady),
+        "torque_rms_N_m": _rms(matrix(signals, [f"{name}.torque_N_m" for name in joints]), steady) if joints else None,
+        "tracking_error_rms_rad": _rms(tracking_errors(signals, joints), steady) if joints else None,
         "peak_torque_N_m": {name: float(np.abs(signals[f"{name}.torque_N_m"].to_numpy()).max()) for name in joints},
         "saturated_share": {name: float(signals[f"{name}.saturated"].to_numpy().mean()) for name in joints},
-        "tracking_error_rad": {name: tracking_error(signals, name, steady) for name in joints},
+        "tracking_error_rad": {name: _rms(tracking_errors(signals, [name]), steady) for name in joints},
         "ik_converged_share": ik_converged_share(signals),
         "qp_failures": qp_failures(signals),
         "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass) if physics else None,
@@ -146,10 +151,12 @@ def qp_failures(signals: pa.Table) -> int | None:
     return int(counts[np.isfinite(counts)].max(initial=0))
 
 
-def tracking_error(signals: pa.Table, joint: str, rows: Mask) -> float | None:
-    """Root mean square difference between a joint's desired and actual angle [rad]."""
-    desired, actual = (matrix(signals, [f"{joint}.{which}_rad"]) for which in ("desired_angle", "angle"))
-    return _rms_norm(desired - actual, rows)
+def tracking_errors(signals: pa.Table, joints: Sequence[str]) -> Array:
+    """Desired minus actual angles of joints [rad], shape (rows, joints)."""
+    desired, actual = (
+        matrix(signals, [f"{joint}.{which}_rad" for joint in joints]) for which in ("desired_angle", "angle")
+    )
+    return desired - actual
 
 
 def ik_converged_share(signals: pa.Table) -> float | None:
@@ -167,6 +174,11 @@ def _finite(value: Any) -> Any:
 
 def _slope(time: Array, x: Array) -> float | None:
     return float((x[-1] - x[0]) / (time[-1] - time[0])) if time.size > 1 else None
+
+
+def _rms(values: Array, rows: Mask) -> float | None:
+    """Root mean square of all values, shape (rows, n), in the chosen rows; None if there are none."""
+    return float(np.sqrt((values[rows] ** 2).mean())) if rows.any() else None
 
 
 def _rms_norm(vectors: Array, rows: Mask) -> float | None:

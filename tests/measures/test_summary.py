@@ -11,7 +11,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import events_of
 from humanwalk.measures.signals import TIME
-from humanwalk.measures.summary import foot_lift, foot_line_error, summarize, tracking_error
+from humanwalk.measures.summary import foot_lift, foot_line_error, summarize, tracking_errors
 from humanwalk.numerics import Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario, load_scenario
@@ -128,7 +128,13 @@ def test_steady_walk_begins_with_the_later_of_ramp_and_first_landing() -> None:
 
 def test_run_without_a_steady_part_has_null_there(columns: tuple[str, ...]) -> None:
     summary = summary_of(walk_of(columns, 0.2), end="fell")
-    for key in ("mean_speed_m_s", "support_force_rms_N", "pelvis_tracking_rms_m", "cost_of_transport"):
+    for key in (
+        "mean_speed_m_s",
+        "support_force_rms_N",
+        "pelvis_tracking_rms_m",
+        "cost_of_transport",
+        "torque_rms_N_m",
+    ):
         assert summary[key] is None
     assert set(summary["tracking_error_rad"].values()) == {None}
     assert summary["foot_lift_m"] == {"left": None, "right": None}
@@ -214,10 +220,25 @@ def test_foot_line_error_is_the_greatest_either_way(columns: tuple[str, ...]) ->
 def test_tracking_error_is_root_mean_square(columns: tuple[str, ...], joints: JointMap) -> None:
     name = joints.names[3]
     signals = walk_of(columns, **{f"{name}.desired_angle_rad": lambda t: np.where(t < 2.5, 0.0, 0.2)})
-    rows = signals[TIME].to_numpy() >= 2.5
-    assert tracking_error(signals, name, rows) == pytest.approx(0.2)
-    assert tracking_error(signals, name, ~rows) == 0.0
-    assert tracking_error(signals, name, rows & ~rows) is None
+    late = signals[TIME].to_numpy() >= 2.5
+    errors = tracking_errors(signals, joints.names)
+    np.testing.assert_array_equal(errors[:, 3], np.where(late, 0.2, 0.0))
+    np.testing.assert_array_equal(np.delete(errors, 3, axis=1), 0.0)
+    summary = summary_of(signals)
+    steady = signals[TIME].to_numpy() >= summary["steady_from_s"]
+    share = late.sum() / steady.sum()
+    assert summary["tracking_error_rad"] == pytest.approx(dict.fromkeys(joints.names, 0.0) | {name: 0.2 * share**0.5})
+    assert summary["tracking_error_rms_rad"] == pytest.approx(0.2 * (share / len(joints.names)) ** 0.5)
+
+
+def test_torque_is_the_root_mean_square_of_all_joints_in_the_steady_walk(
+    columns: tuple[str, ...], joints: JointMap
+) -> None:
+    first, second = joints.names[:2]
+    signals = walk_of(
+        columns, **{f"{first}.torque_N_m": lambda t: np.where(t < 0.2, 1e3, 30.0), f"{second}.torque_N_m": -40.0}
+    )
+    assert summary_of(signals)["torque_rms_N_m"] == pytest.approx(50.0 / len(joints.names) ** 0.5)
 
 
 def test_cost_of_transport_of_a_known_power(columns: tuple[str, ...], joints: JointMap) -> None:
