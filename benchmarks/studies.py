@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from actuation_figure import tracking_by_group
+from matplotlib.figure import Figure
 
 from humanwalk.files import make_folder
 from humanwalk.study import journal
@@ -41,11 +43,24 @@ KEPT = (
 )
 """Columns of a study's table that are kept beside its factors: those of the pages."""
 
+KEPT_OF = {
+    "actuations": (
+        "tracking_error_rms_rad",
+        "torque_rms_N_m",
+        "pelvis_tracking_rms_m",
+        "peak_torque_N_m.RightLegFemurMotion",
+    )
+}
+"""Further columns of single studies."""
+
 PICTURES = {
     "push_random": (SURVIVAL,),
     "thesis_step_height": ("support_force_rms_N", "support_torque_rms_N_m"),
 }
 """Measures of studies of which the book has pictures."""
+
+DRAWN: dict[str, Callable[[Results], Figure]] = {"actuations": tracking_by_group}
+"""Pictures of their own."""
 
 FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
@@ -155,6 +170,24 @@ def thesis_step_height() -> str:
     return study_table("thesis_step_height", headings, line)
 
 
+def actuations() -> str:
+    def line(row: dict[str, Any]) -> list[str]:
+        return [
+            f"`{row['actuation']}`",
+            f"{1e3 * row['tracking_error_rms_rad']:.2f}",
+            f"{row['torque_rms_N_m']:.1f}",
+            f"{row['peak_torque_N_m.RightLegFemurMotion']:.0f}",
+            f"{row['support_force_rms_N']:.0f}",
+            f"{row['support_torque_rms_N_m']:.0f}",
+            f"{1e3 * row['pelvis_tracking_rms_m']:.2f}",
+            f"{row['cost_of_transport']:.2f}",
+        ]
+
+    headings = ["actuation", "tracking error mrad", "torque N m", "peak torque, right hip N m"]
+    headings += ["support force N", "support torque N m", "pelvis error mm", "cost of transport"]
+    return study_table("actuations", headings, line)
+
+
 def study_table(name: str, headings: Sequence[str], line: Callable[[dict[str, Any]], list[str]]) -> str:
     """Table of the rows of a study, a line for each."""
     return study_section(name, lambda rows: table(headings, map(line, rows)))
@@ -174,7 +207,7 @@ def study_results(name: str) -> Results:
         ValueError: the study was changed since.
     """
     study = load_study(name)
-    table = journal.read(RESULTS / f"{name}.csv", kept_columns(study), len(study.points))
+    table = journal.read(RESULTS / f"{name}.csv", kept_columns(study, name), len(study.points))
     points = [{column: study.value_at(point, column) for column in study.columns} for point in study.points]
     if table.select(list(study.columns)).to_pylist() != points:
         raise ValueError(f"{name}.csv: rows of another study; run `humanwalk study {name}` and keep its rows")
@@ -187,7 +220,7 @@ def keep(folder: Path) -> None:
     study = load_study(name)
     if results.study.points != study.points or results.table.num_rows < len(study.points):
         raise ValueError(f"{folder}: not the finished study {name}; run `humanwalk study {name} -o {folder}`")
-    path, columns = RESULTS / f"{name}.csv", kept_columns(study)
+    path, columns = RESULTS / f"{name}.csv", kept_columns(study, name)
     path.unlink(missing_ok=True)
     journal.start(path, columns, len(study.points))
     for row in results.table.to_pylist():
@@ -196,11 +229,14 @@ def keep(folder: Path) -> None:
     for measure in PICTURES.get(name, ()):
         for which, figure in measure_figures(results, measure).items():
             save(figure, IMAGES / f"{name}_{which}.png")
+    if name in DRAWN:
+        save(DRAWN[name](results), IMAGES / f"{name}.png")
 
 
-def kept_columns(study: Study) -> dict[str, type]:
-    """Types of the columns of the results of a study: index, factors, KEPT."""
-    return {name: kind for name, kind in table_columns(study).items() if name in (ROW, *study.columns, *KEPT)}
+def kept_columns(study: Study, name: str) -> dict[str, type]:
+    """Types of the columns of the results of a named study: index, factors, KEPT, KEPT_OF."""
+    kept = (ROW, *study.columns, *KEPT, *KEPT_OF.get(name, ()))
+    return {column: kind for column, kind in table_columns(study).items() if column in kept}
 
 
 def _walked(row: dict[str, Any]) -> list[str]:
@@ -232,5 +268,6 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "claims.md": (thesis_step_height,),
+    "actuation.md": (actuations,),
 }
 """Sections from studies, by page of the book."""
