@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.study.design import Point
 from humanwalk.study.row import Row
 
@@ -74,6 +74,11 @@ class Bound(Measured):
     high: float = quantity(NO_LIMIT, "", -NO_LIMIT, NO_LIMIT)
     penalty: float = quantity(10.0, "", 0.0, 1e9)
     """Cost per unit of the measure beyond a limit."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError unless low <= high."""
+        if self.low > self.high:
+            raise ParameterError(f"low: {self.low:g} is above high; allowed: up to {self.high:g}; swap them")
 
     @property
     def allowed(self) -> str:

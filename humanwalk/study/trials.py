@@ -1,8 +1,11 @@
 """The table of a tuning on disk: its trials with parameters, values and cost.
 
-tuning.yaml     the complete tuning
-trials.csv      one line per finished trial; see `humanwalk.study.journal` for its guarantees
-best.yaml       the scenario of the best trial, by `tune show`
+The folder of a tuning:
+
+    tuning.yaml     the complete tuning
+    trials.csv      one line per finished trial; see `humanwalk.study.journal` for its guarantees
+    best.yaml       the scenario of the best trial, by `tune show`
+    tuning.html     the page, by `tune show`
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,6 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 
 from humanwalk.files import WRITABLE, file_errors, locked, make_folder, require_inside, write_text
 from humanwalk.quantity import ParameterError, printable
@@ -103,9 +107,9 @@ def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
     busy = f"-o {printable(folder)}: another tuning writes into it; allowed: one at a time; wait, or choose another"
     with locked(folder, busy):
         _claim(folder, tuning)
-        path = folder / TRIALS
-        rows = journal.start(path, trial_columns(tuning), MAX_TRIALS).to_pylist()
-        yield TrialTable(path, tuning, {row[TRIAL]: row for row in rows})
+        path = require_inside(folder, folder / TRIALS)
+        table = journal.start(path, trial_columns(tuning), MAX_TRIALS)
+        yield TrialTable(path, tuning, {row[TRIAL]: row for row in _checked(path, table)})
 
 
 def _claim(folder: Path, tuning: Tuning) -> None:
@@ -151,8 +155,22 @@ def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:
         ParameterError: the folder holds no tuning, or its table was changed.
     """
     tuning = read_tuning(folder)
-    table = journal.read(require_inside(folder, folder / TRIALS), trial_columns(tuning), MAX_TRIALS)
-    return tuning, table.to_pylist()
+    path = require_inside(folder, folder / TRIALS)
+    return tuning, _checked(path, journal.read(path, trial_columns(tuning), MAX_TRIALS))
+
+
+def _checked(path: Path, table: pa.Table) -> list[Row]:
+    """The rows of a table; a value of an objective or bound may be missing, nothing else, and numbers are finite."""
+    for name in table.column_names:
+        column = table[name]
+        missing = column.null_count and not name.startswith("values.") and name not in ("end", "host")
+        if missing or (column.type == pa.float64() and not np.isfinite(column.drop_null().to_numpy()).all()):
+            raise ParameterError(
+                f"{printable(path)}: column {printable(name)} has a cell that is empty or not finite; allowed: the "
+                "file as humanwalk tune wrote it; restore it, or choose another folder with -o"
+            )
+    rows: list[Row] = table.to_pylist()
+    return rows
 
 
 def walked(tuning: Tuning, row: Row) -> bool:

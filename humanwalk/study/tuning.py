@@ -71,7 +71,7 @@ class Tuning:
     """One line for people."""
 
     runs: Study = Study()
-    """The runs of one trial, in the order in which they are simulated; a run that is likely to fall comes first."""
+    """The runs of one trial, in the order in which they are simulated."""
 
     parameters: Mapping[str, Range] = field(default_factory=dict)
     """Fields of the scenario that are searched, by dotted name as in --set."""
@@ -103,8 +103,7 @@ class Tuning:
             raise ParameterError("parameters: empty; allowed: from one field on; write FIELD: {low: 0.5, high: 2.0}")
         if not self.objectives:
             raise ParameterError("objectives: empty; allowed: from one measure on; write cost_of_transport: {}")
-        if isinstance(self.runs.design, Rows):
-            raise ParameterError("runs.design: rows reads another file; allowed: other designs; write factors")
+        _require_searchable(self.runs, self.parameters)
         for name in self.objectives.keys() & self.bounds.keys():
             raise ParameterError(f"bounds.{name}: is an objective too; allowed: one use of a name; rename one of them")
         for group, entries in (("objectives", self.objectives), ("bounds", self.bounds)):
@@ -134,6 +133,22 @@ class Tuning:
         return self.with_values(values).scenario_at({})
 
 
+def _require_searchable(runs: Study, parameters: Mapping[str, Range]) -> None:
+    """Raise ParameterError for runs that read or keep files, and for a parameter that a factor replaces."""
+    if isinstance(runs.design, Rows):
+        raise ParameterError("runs.design: rows reads another file; allowed: other designs; write factors")
+    if runs.keep != "summary":
+        raise ParameterError("runs.keep: a tuning keeps no run folders; allowed: summary; remove it")
+    replaced = {f"{name}." for point in runs.points for name in runs.overrides(point)}
+    for name in parameters:
+        for factor in replaced:
+            if f"{name}.".startswith(factor):
+                raise ParameterError(
+                    f"parameters.{name}: a factor of the runs replaces {factor[:-1]}; allowed: fields that no factor "
+                    "replaces; remove one of both"
+                )
+
+
 def _require_measure(place: str, measure: str) -> None:
     numbers = {name for name, kind in run_columns().items() if kind is not str and name not in NOT_REPRODUCED}
     numbers |= OF_RUNS.keys()
@@ -152,9 +167,10 @@ def start_values(tuning: Tuning) -> dict[str, float]:
             range cannot be used.
     """
     starts = {name: _start_value(name, tuning.runs.base, limits) for name, limits in tuning.parameters.items()}
+    tuning.runs.require_valid()
     for name, limits in tuning.parameters.items():
         for end in (limits.low, limits.high):
-            tuning.with_values(starts | {name: end}).require_valid()
+            tuning.scenario(starts | {name: end})
     return starts
 
 

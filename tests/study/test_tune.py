@@ -7,7 +7,7 @@ import subprocess
 import sys
 import textwrap
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -170,6 +170,27 @@ def test_a_table_of_another_search_is_refused_in_a_line(tmp_path: Path, one_work
     table.write_text("\n".join([head, first, second, ""]), encoding="utf-8")
     with pytest.raises(ParameterError, match=r"trial 1 has .*dcm_gain = 0\.77, the search has .*; allowed: "):
         tune(wanted, tmp_path, one_worker, function=sphere)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda text: text.replace("0,1.0,", "0,,", 1), "dcm_gain has a cell that is empty or not finite"),
+        (lambda text: text.replace("0,1.0,", "0,nan,", 1), "dcm_gain has a cell that is empty or not finite"),
+        (lambda text: text.replace("0,1.0,", "0,one,", 1), "allowed: the file as humanwalk"),
+        (lambda text: text.replace("trial", "row", 1), "columns of another study or tuning"),
+        (lambda text: text + text.splitlines()[1] + "\n", "a row twice"),
+    ],
+)
+def test_a_table_that_was_changed_is_refused_in_a_line(
+    change: Callable[[str], str], message: str, tmp_path: Path, one_worker: Client
+) -> None:
+    tune(tuning(trials="1"), tmp_path, one_worker, function=sphere)
+    table = tmp_path / TRIALS
+    table.write_text(change(table.read_text(encoding="utf-8")), encoding="utf-8")
+    with pytest.raises(ParameterError, match=message) as caught:
+        read_trials(tmp_path)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_scenario_that_cannot_be_simulated_ends_the_tuning_in_a_line(tmp_path: Path, one_worker: Client) -> None:

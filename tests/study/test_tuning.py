@@ -93,6 +93,16 @@ def test_shipped_tunings_are_valid_and_survive_writing(name: str, tmp_path: Path
         ),
         ({"objectives": "{survived: {runs: {case: wlak}}}"}, "objectives.survived.runs: no run of a trial has .*wlak"),
         ({"bounds": "{cost_of_transport: {high: 1.0}}"}, "bounds.cost_of_transport: is an objective too; allowed: "),
+        ({"bounds": "{survived: {low: 1.0, high: 0.5}}"}, "bounds.survived.low: 1 is above high; allowed: up to 0.5"),
+        ({"runs": "{scenario: walk, keep: runs}", "objectives": "{survived: {}}"}, "runs.keep: .*; allowed: summary"),
+        (
+            {
+                "parameters": "{duration: {low: 1.0, high: 30.0}}",
+                "runs": "{factors: {duration: [5, 9]}}",
+                "objectives": "{survived: {}}",
+            },
+            "parameters.duration: a factor of the runs replaces duration; allowed: ",
+        ),
         ({"sampler": "tpe"}, "sampler: 'tpe' is unknown; allowed: cma_es, nsga2"),
         ({"population": "3"}, "population: 3 is out of range; allowed: 4 to 1000"),
         ({"runs": "walk"}, "runs: 'walk' is not a group of fields; allowed: "),
