@@ -17,7 +17,7 @@ from humanwalk.files import make_folder
 from humanwalk.study import journal
 from humanwalk.study.figures import measure_figures
 from humanwalk.study.results import SURVIVAL, Results
-from humanwalk.study.statistics import Level, Survival, levels_of
+from humanwalk.study.statistics import Level, Survival, factor_array, levels_of
 from humanwalk.study.study import Study, load_study
 from humanwalk.study.table import ROW, table_columns
 from humanwalk.view.plots.drawing import save
@@ -151,7 +151,7 @@ def push_random() -> str:
             return [f"{ends[0]:.0f}° to {ends[1]:.0f}°", *_survival(inside)]
 
         survived, interval = _survival(rows)
-        levels = levels_of([row[PUSH_DIRECTION] for row in rows], 8)
+        levels = levels_of(factor_array([row[PUSH_DIRECTION] for row in rows]), 8)
         return f"{survived} survived ({interval}):\n\n" + table(
             ["direction", "survived", "95 % interval"], [line(level) for level in levels]
         )

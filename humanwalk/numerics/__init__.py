@@ -8,3 +8,4 @@ Array = npt.NDArray[np.float64]
 
 Indices = npt.NDArray[np.int_]
 Mask = npt.NDArray[np.bool_]
+Texts = npt.NDArray[np.str_]

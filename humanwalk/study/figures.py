@@ -13,9 +13,11 @@ from humanwalk.study.statistics import (
     CLASSES,
     CONFIDENCE,
     MAX_LEVELS,
+    FactorArray,
     Level,
     Spread,
     Survival,
+    is_numeric,
     levels_of,
     ranked_effects,
 )
@@ -32,9 +34,13 @@ MAX_BARS = 15
 MAX_WRITTEN_CELLS = 150
 """Cells of a map up to which their values are written into them."""
 
+MAX_DRAWN = 2000
+"""Points of a figure that are drawn one by one; more are drawn as a picture, which does not grow with them."""
+
 COLORS = "viridis"
 
-Draw = Callable[[Axes, list[Level]], None]
+Draw = Callable[[Axes, list[Level], str], None]
+"""Draws levels into axes with a format of matplotlib."""
 
 
 def measure_figures(results: Results, name: str) -> dict[str, Figure]:
@@ -65,8 +71,8 @@ def over_factors(results: Results, name: str) -> Figure:
     for place, (axes, factor) in enumerate(zip(figure.axes, factors, strict=False)):
         levels = levels_of(results.factors[factor], MAX_LEVELS if len(factors) == 1 else 2 * CLASSES)
         axes.margins(x=0.05)
-        draw(axes, levels)
-        _ticks(axes, levels, len(set(results.factors[factor])), columns)
+        draw(axes, levels, "o-" if is_numeric(results.factors[factor]) else "o")
+        _ticks(axes, levels, np.unique(results.factors[factor]).size, columns)
         label(axes, results.label(factor), results.label(name) if place % columns == 0 else "")
     for axes in figure.axes[len(factors) :]:
         axes.set_visible(False)
@@ -78,7 +84,8 @@ def map_of_two(results: Results, name: str) -> Figure:
     (x_name, x), (y_name, y) = results.factors.items()
     values = results.measure(name)
     x_levels, y_levels = levels_of(x), levels_of(y)
-    if len(set(x)) > len(x_levels) or len(set(y)) > len(y_levels) or len(x_levels) * len(y_levels) > 2 * len(x):
+    sampled = np.unique(x).size > len(x_levels) or np.unique(y).size > len(y_levels)
+    if sampled or len(x_levels) * len(y_levels) > 2 * x.size:
         figure = _points_of_two(results, name, values)
     else:
         figure = new_figure(results.label(name), 0.9 + 0.32 * max(len(y_levels), 4))
@@ -126,34 +133,34 @@ def greatest(results: Results, values: Array) -> list[str]:
 
 
 def _survival(results: Results) -> Draw:
-    def draw(axes: Axes, levels: list[Level]) -> None:
+    def draw(axes: Axes, levels: list[Level], form: str) -> None:
         found = [Survival.of(results.survived[level.rows]) for level in levels]
         share = np.array([100.0 * each.share for each in found])
         below = share - [100.0 * each.low for each in found]
         above = [100.0 * each.high for each in found] - share
         # Rounding may put the end of an interval on the wrong side of its share.
-        _means(axes, levels, share, np.maximum([below, above], 0.0))
+        _means(axes, levels, share, np.maximum([below, above], 0.0), form)
         axes.set_ylim(-5.0, 105.0)
 
     return draw
 
 
 def _spreads(values: Array) -> Draw:
-    def draw(axes: Axes, levels: list[Level]) -> None:
+    def draw(axes: Axes, levels: list[Level], form: str) -> None:
         found = [(level, spread) for level in levels if (spread := Spread.of(values[level.rows])) is not None]
         for level in levels:
-            axes.plot(np.full(level.rows.size, level.position), values[level.rows], ".", color=DESIRED, markersize=3)
+            at = np.full(level.rows.size, level.position)
+            axes.plot(at, values[level.rows], ".", color=DESIRED, markersize=3, rasterized=values.size > MAX_DRAWN)
         means = np.array([spread.mean for _, spread in found])
         deviations = np.array([spread.standard_deviation for _, spread in found])
-        _means(axes, [level for level, _ in found], means, deviations)
+        _means(axes, [level for level, _ in found], means, deviations, form)
 
     return draw
 
 
-def _means(axes: Axes, levels: list[Level], values: Array, errors: Array) -> None:
+def _means(axes: Axes, levels: list[Level], values: Array, errors: Array, form: str) -> None:
     positions = [level.position for level in levels]
-    axes.errorbar(positions, values, errors, fmt="o", markersize=3, linewidth=1.0, capsize=2, color=MARK)
-    axes.plot(positions, values, color=MARK, linewidth=0.7, alpha=0.5)
+    axes.errorbar(positions, values, errors, fmt=form, markersize=3, lw=0.6, elinewidth=1.0, capsize=2, color=MARK)
 
 
 def _ticks(axes: Axes, levels: list[Level], distinct: int, columns: int) -> None:
@@ -172,10 +179,8 @@ def _points_of_two(results: Results, name: str, values: Array) -> Figure:
     figure = new_figure(results.label(name), 3.4)
     (axes,) = figure.axes
     axes.margins(0.03)
-    positions = [np.empty(len(x)), np.empty(len(y))]
-    for place, factor in zip(positions, (x, y), strict=True):
-        for level in levels_of(factor, len(factor)):
-            place[level.rows] = level.position
+    axes.set_rasterization_zorder(2.5 if values.size > MAX_DRAWN else None)
+    positions = [_positions(factor) for factor in (x, y)]
     if name == SURVIVAL:
         for survived, mark, color, text in ((True, "o", MARK, "survived"), (False, "X", SIDE["Left"], "did not")):
             rows = results.survived == survived
@@ -186,6 +191,16 @@ def _points_of_two(results: Results, name: str, values: Array) -> Figure:
         points = axes.scatter(positions[0], positions[1], c=values, cmap=COLORS, s=22)
         figure.colorbar(points).set_label(results.label(name), fontsize=LABEL_SIZE)
     return figure
+
+
+def _positions(factor: FactorArray) -> Array:
+    """Places of the rows on an axis, shape (rows,): their numbers, or the place of their text."""
+    if is_numeric(factor):
+        return factor
+    places = np.empty(factor.size)
+    for level in levels_of(factor):
+        places[level.rows] = level.position
+    return places
 
 
 def _cell_means(values: Array, rows: list[Level], columns: list[Level]) -> Array:
@@ -215,4 +230,4 @@ def _limits(name: str) -> tuple[float, float] | tuple[None, None]:
 def _title(results: Results, name: str, values: Array) -> str:
     if name == SURVIVAL:
         return f"Runs that survived; bars: {100 * CONFIDENCE:.0f} % Wilson intervals"
-    return f"{results.label(name)} of the {np.isfinite(values).sum()} runs that survived; bars: ± 1 standard deviation"
+    return f"{results.label(name)} of {np.isfinite(values).sum()} runs that survived; bars: ± 1 standard deviation"

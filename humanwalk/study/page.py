@@ -1,5 +1,6 @@
 """What `humanwalk study show` prints and writes of a study: tables for a terminal, a page with figures."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -77,7 +78,7 @@ def spread_rows(results: Results, name: str) -> Iterator[tuple[str, ...]]:
         if spread is None:
             yield factor, level.label, "0", *["-"] * 5
         else:
-            yield factor, level.label, str(spread.count), *(f"{number:.4g}" for number in spread.numbers)
+            yield factor, level.label, str(spread.count), *map(_number, spread.numbers)
 
 
 def mean_header(results: Results, measures: Sequence[str]) -> tuple[str, ...]:
@@ -96,6 +97,10 @@ def _mean(spread: Spread | None) -> str:
     if spread is None:
         return "-"
     return f"{spread.mean:.4g}" + (f" ± {spread.standard_deviation:.2g}" if spread.count > 1 else "")
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.4g}"
 
 
 def _levels(results: Results, name: str) -> Iterator[tuple[str, Level]]:

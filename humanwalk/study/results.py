@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,7 @@ from humanwalk.measures.signals import UNIT, unit_of
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import ParameterError, numbers_of, printable
 from humanwalk.study.row import run_columns
-from humanwalk.study.statistics import is_numeric
+from humanwalk.study.statistics import FactorArray, factor_array, is_numeric
 from humanwalk.study.study import Study
 from humanwalk.study.table import ROW, read_study, read_table
 
@@ -70,30 +69,33 @@ class Results:
         return Results(printable(folder.resolve().name), study, table)
 
     @cached_property
-    def factors(self) -> dict[str, list[Any]]:
+    def factors(self) -> dict[str, FactorArray]:
         """Values of every factor that varies, one a row, by name.
 
         The seed only repeats and is left out, as are numbers that rise or fall with those of another factor in every
         row: their effects cannot be told apart.
         """
-        return {name: self._varying[name] for name in self._varying if name not in self._followers}
+        return {name: values for name, values in self._varying.items() if name not in self._followers}
 
     @cached_property
-    def _varying(self) -> dict[str, list[Any]]:
+    def _varying(self) -> dict[str, FactorArray]:
         points = [self.study.points[row] for row in self.table[ROW].to_pylist()]
         columns = {
-            name: [_level(self.study.value_at(point, name)) for point in points]
+            name: factor_array([_level(self.study.value_at(point, name)) for point in points])
             for name in self.study.columns
             if name != SEED
         }
-        return {name: values for name, values in columns.items() if len(set(values)) > 1}
+        return {name: values for name, values in columns.items() if (values != values[0]).any()}
 
     @cached_property
     def _followers(self) -> dict[str, str]:
         """The factor of which each factor that is left out is a monotonic function."""
-        numbers = {name: values for name, values in self._varying.items() if is_numeric(values)}
-        pairs = ((name, other) for other, name in combinations(numbers, 2))
-        return {name: other for name, other in pairs if _monotonic(numbers[name], numbers[other])}
+        leaders: dict[bytes, str] = {}
+        followers = {}
+        for name, values in self._varying.items():
+            if is_numeric(values) and (leader := leaders.setdefault(_order(values), name)) != name:
+                followers[name] = leader
+        return followers
 
     @cached_property
     def survived(self) -> Mask:
@@ -156,17 +158,19 @@ class Results:
         return dict(Counter(printable(end) for end in self.table["end"].to_pylist()).most_common(MAX_ENDS))
 
 
-def _monotonic(values: Sequence[float], others: Sequence[float]) -> bool:
-    """Whether values are a strictly monotonic function of others, and the reverse."""
-    ranks, other_ranks = (np.unique(numbers, return_inverse=True)[1] for numbers in (values, others))
-    return np.array_equal(ranks, other_ranks) or np.array_equal(ranks, other_ranks.max() - other_ranks)
+def _order(values: Array) -> bytes:
+    """The ranks of values, the same for values that rise or fall with these."""
+    ranks = np.unique(values, return_inverse=True)[1]
+    return min(ranks.tobytes(), (ranks.max() - ranks).tobytes())
 
 
 def _level(value: Any) -> Any:
     """A value of a factor as a number or text."""
     if value is None:
         return AS_IN_SCENARIO
-    return value if is_numeric([value]) else printable(value if isinstance(value, str) else json.dumps(value), 60)
+    if isinstance(value, int | float):
+        return value
+    return printable(value if isinstance(value, str) else json.dumps(value), 60)
 
 
 def _without_units(name: str) -> str:

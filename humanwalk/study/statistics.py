@@ -3,18 +3,21 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from scipy import stats
 
-from humanwalk.numerics import Array, Indices, Mask
+from humanwalk.numerics import Array, Indices, Mask, Texts
 
 CONFIDENCE = 0.95
 """Of the interval of survival."""
 
 SIGNIFICANCE = 0.05
 """Probability of a share of variance at least as great without an effect, below which an effect is not chance."""
+
+FactorArray = Array | Texts
+"""Values of a factor, one a row, shape (rows,): floats or texts."""
 
 MAX_LEVELS = 25
 """Most distinct values of a factor that are levels of their own; more are put into classes."""
@@ -69,11 +72,11 @@ class Spread:
 
     @staticmethod
     def of(values: Array) -> "Spread | None":
-        """Spread of values, shape (n,); None without a finite one. One value has no standard deviation: 0."""
+        """Spread of values, shape (n,); None without a finite one. The standard deviation of one value is NaN."""
         finite = values[np.isfinite(values)]
         if not finite.size:
             return None
-        deviation = finite.std(ddof=1) if finite.size > 1 else 0.0
+        deviation = finite.std(ddof=1) if finite.size > 1 else math.nan
         return Spread(finite.size, *map(float, (finite.mean(), deviation, *np.percentile(finite, (5, 50, 95)))))
 
 
@@ -92,33 +95,41 @@ class Level:
     rows: Indices
 
 
-def levels_of(values: Sequence[Any], classes: int = CLASSES) -> list[Level]:
-    """Levels of a factor: its distinct values, numbers in order and others by their first row.
+def factor_array(values: Sequence[Any]) -> FactorArray:
+    """Values of a factor as floats if all are numbers, else as texts; true and false are texts."""
+    numeric = all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
+    return np.array(values, dtype=float) if numeric else np.array([str(value) for value in values])
+
+
+def is_numeric(values: FactorArray) -> TypeGuard[Array]:
+    """Whether the values of a factor are numbers."""
+    return values.dtype.kind == "f"
+
+
+def levels_of(values: FactorArray, classes: int = CLASSES) -> list[Level]:
+    """Levels of a factor: its distinct values, numbers in order and texts by their first row.
 
     Numbers that are samples are put into classes of about equal size instead: more than MAX_LEVELS distinct numbers,
     or more than `classes` of which most come once.
+
+    Args:
+        values: shape (rows,), from `factor_array`.
+        classes: their number.
     """
     if not is_numeric(values):
-        names = list(dict.fromkeys(map(str, values)))
-        texts = np.array([str(value) for value in values])
-        return [Level(name, float(place), np.flatnonzero(texts == name)) for place, name in enumerate(names)]
-    numbers = np.asarray(values, dtype=float)
-    distinct = np.unique(numbers)
-    if distinct.size <= (MAX_LEVELS if 2 * distinct.size <= numbers.size else classes):
-        return [Level(f"{value:.4g}", float(value), np.flatnonzero(numbers == value)) for value in distinct]
-    edges = np.unique(np.quantile(numbers, np.linspace(0.0, 1.0, classes + 1)[1:-1]))
-    places = np.searchsorted(edges, numbers, side="right")
-    return [_class(numbers, np.flatnonzero(places == place)) for place in np.unique(places)]
+        names = dict.fromkeys(values.tolist())
+        return [Level(name, float(place), np.flatnonzero(values == name)) for place, name in enumerate(names)]
+    distinct = np.unique(values)
+    if distinct.size <= (MAX_LEVELS if 2 * distinct.size <= values.size else classes):
+        return [Level(f"{value:.4g}", float(value), np.flatnonzero(values == value)) for value in distinct]
+    edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, classes + 1)[1:-1]))
+    places = np.searchsorted(edges, values, side="right")
+    return [_class(values, np.flatnonzero(places == place)) for place in np.unique(places)]
 
 
 def _class(numbers: Array, rows: Indices) -> Level:
     inside = numbers[rows]
     return Level(f"{inside.min():.3g} to {inside.max():.3g}", float(inside.mean()), rows)
-
-
-def is_numeric(values: Sequence[Any]) -> bool:
-    """Whether all values of a factor are numbers; true and false are names."""
-    return all(isinstance(value, int | float | np.number) and not isinstance(value, bool) for value in values)
 
 
 @dataclass(frozen=True)
@@ -145,7 +156,7 @@ class Effect:
         return self.p_value < SIGNIFICANCE
 
 
-def ranked_effects(factors: Mapping[str, Sequence[Any]], measure: Array) -> list[Effect]:
+def ranked_effects(factors: Mapping[str, FactorArray], measure: Array) -> list[Effect]:
     """Effects of factors on a measure, the greatest first.
 
     The share of variance is Pearson's correlation ratio eta^2 = SS_between / SS_total over the levels of a factor. It
@@ -155,7 +166,7 @@ def ranked_effects(factors: Mapping[str, Sequence[Any]], measure: Array) -> list
     epsilon^2 = 1 - (1 - eta^2) (N - 1) / (N - M), not below 0.
 
     Args:
-        factors: values by name, one a row.
+        factors: values by name, each of shape (rows,), from `factor_array`.
         measure: values, shape (rows,); rows that are not finite do not count.
 
     Returns:
@@ -166,11 +177,11 @@ def ranked_effects(factors: Mapping[str, Sequence[Any]], measure: Array) -> list
     # Rounding alone makes a constant vary.
     if y.size < 3 or np.ptp(y) <= 1e-12 * np.abs(y).max():
         return []
-    effects = (_effect(name, [values[row] for row in finite.tolist()], y) for name, values in factors.items())
+    effects = (_effect(name, values[finite], y) for name, values in factors.items())
     return sorted((effect for effect in effects if effect is not None), key=lambda effect: -effect.share)
 
 
-def _effect(name: str, values: Sequence[Any], y: Array) -> Effect | None:
+def _effect(name: str, values: FactorArray, y: Array) -> Effect | None:
     # Rice's rule for the number of classes.
     levels = levels_of(values, round(2.0 * len(values) ** (1.0 / 3.0)))
     n, m = y.size, len(levels)
