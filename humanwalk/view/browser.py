@@ -71,6 +71,8 @@ HOLD = """() => {
     viewer.set_3d_pane_size(innerWidth, innerHeight);
     viewer.renderer.domElement.remove();
     viewer.renderer.shadowMap.type = 0;
+    const floor = viewer.scene.getObjectByName("endless floor");
+    if (floor) Object.assign(floor.material.map, {anisotropy: 1, needsUpdate: true});
     const round = [8, 12, 16].map(n => new THREE.SphereGeometry(1, n, Math.round(0.75 * n)));
     const pixelsPerMeter = innerHeight / 2.4;
     viewer.scene.updateMatrixWorld(true);

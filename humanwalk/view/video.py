@@ -6,11 +6,15 @@ import re
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from os import cpu_count
 from pathlib import Path
+from queue import Queue
+from threading import Event
 
 from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
@@ -18,6 +22,7 @@ from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.run.fall_picture import replay_duration
 from humanwalk.run.folder import Run
 from humanwalk.view.browser import open_stage
+from humanwalk.view.replay import content_policy
 from humanwalk.view.views import VIEWS, View, camera
 
 FORMATS = (".mp4", ".gif", ".webp")
@@ -29,6 +34,14 @@ MAX_STRIP_PIXELS = 50_000_000
 
 FRAME_END = 1e-9
 """Fraction of a frame by which the last one may exceed the end: sums of fractions are not exact."""
+
+FRAME = "{:05}.jpeg"
+FRAMES = "%05d.jpeg"
+"""Names of the files of frames, for Python and for ffmpeg."""
+
+MAX_BROWSERS = 4
+MIN_FRAMES_PER_BROWSER = 10
+"""Software WebGL uses little more than one core, and starting a browser takes as long as several frames."""
 
 STRIP_GAP = 8
 STRIP_LABEL = 30
@@ -157,18 +170,58 @@ def record_video(
     # Checked before the frames are rendered.
     make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
-        frames = Path(folder) / "frames.mjpeg"
-        with open_stage(page, parameters.width, parameters.height, duration) as stage, frames.open("wb") as file:
-            times = parameters.times(stage.duration)
-            for done, time in enumerate(times, start=1):
-                file.write(stage.still(time, camera(parameters.view, time)))
+        drawn = 0
+        with closing(_draw_frames(page, duration, parameters, Path(folder))) as drawing:
+            for frames in drawing:
                 if interrupted():
                     raise KeyboardInterrupt
-                on_progress(done, len(times))
-        write_whole(output, partial(_encode, ffmpeg, frames, parameters.frame_rate))
+                drawn += 1
+                on_progress(drawn, frames)
+        write_whole(output, partial(_encode, ffmpeg, Path(folder), parameters.frame_rate))
         if interrupted():
             raise KeyboardInterrupt
-    return len(times)
+    return drawn
+
+
+def _draw_frames(page: Path, duration: float, parameters: VideoParameters, folder: Path) -> Generator[int]:
+    """Draw every frame into a file of a folder, in one browser per core; yields the number of frames after each."""
+    ended: Queue[int | Exception | None] = Queue()
+    stop = Event()
+    # Made once, before threads need it.
+    content_policy()
+    expected = len(parameters.times(duration))
+    browsers = max(1, min(cpu_count() or 1, MAX_BROWSERS, expected // MIN_FRAMES_PER_BROWSER))
+
+    def draw(browser: int) -> None:
+        try:
+            with open_stage(page, parameters.width, parameters.height, duration) as stage:
+                times = parameters.times(stage.duration)
+                for number in range(browser, len(times), browsers):
+                    if stop.is_set():
+                        break
+                    still = stage.still(times[number], camera(parameters.view, times[number]))
+                    (folder / FRAME.format(number)).write_bytes(still)
+                    ended.put(len(times))
+        except Exception as error:
+            ended.put(error)
+        else:
+            ended.put(None)
+
+    with ThreadPoolExecutor(browsers) as pool:
+        for browser in range(browsers):
+            pool.submit(draw, browser)
+        try:
+            running = browsers
+            while running:
+                match ended.get():
+                    case None:
+                        running -= 1
+                    case Exception() as error:
+                        raise error
+                    case frames:
+                        yield frames
+        finally:
+            stop.set()
 
 
 def write_snapshot(
@@ -258,14 +311,14 @@ def between_frames() -> Iterator[Callable[[], bool]]:
 
 
 def _encode(ffmpeg: str, frames: Path, frame_rate: float, output: Path) -> None:
-    source = ["-f", "mjpeg", "-framerate", f"{frame_rate:g}", "-i", str(frames)]
+    source = ["-framerate", f"{frame_rate:g}", "-i", str(frames / FRAMES)]
     match output.suffix.lower():
         case ".mp4":
             _run(ffmpeg, *source, *H264, *EXACT, str(output))
         case ".webp":
             _run(ffmpeg, *source, *WEBP, *EXACT, str(output))
         case _:
-            palette = frames.with_name("palette.png")
+            palette = frames / "palette.png"
             _run(ffmpeg, *source, *PALETTE, str(palette))
             _run(ffmpeg, *source, "-i", str(palette), *GIF, *EXACT, str(output))
 

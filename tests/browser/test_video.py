@@ -28,9 +28,13 @@ def frame_hashes(video: Any) -> Any:
     return [line.split(",")[-1].strip() for line in result.stdout.splitlines() if not line.startswith("#")]
 
 
-def test_two_recordings_of_one_run_are_the_same_frame_by_frame(short_run: Any, tmp_path: Path) -> None:
+def test_recordings_by_one_and_by_two_browsers_are_the_same_frame_by_frame(
+    short_run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     videos = [tmp_path / name for name in ("one.mp4", "two.mp4")]
-    for video in videos:
+    monkeypatch.setattr("humanwalk.view.video.MIN_FRAMES_PER_BROWSER", 4)
+    for browsers, video in enumerate(videos, start=1):
+        monkeypatch.setattr("humanwalk.view.video.MAX_BROWSERS", browsers)
         assert record_video(short_run.path, video, SMALL) == 9
     hashes = [frame_hashes(video) for video in videos]
     assert hashes[0] == hashes[1]
