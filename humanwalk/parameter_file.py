@@ -157,6 +157,8 @@ def _plain(value: Any) -> Any:
             elif "choices_by_name" in field.metadata:
                 choices = field.metadata["choices_by_name"]
                 entries[field.name] = {name: _tagged(choices, chosen) for name, chosen in entry.items()}
+            elif "choice_list" in field.metadata:
+                entries[field.name] = [_tagged(field.metadata["choice_list"], chosen) for chosen in entry]
             else:
                 entries[field.name] = _plain(entry)
         return entries
@@ -211,11 +213,7 @@ def _build(kind: Any, value: Any, place: _Place) -> Any:
             )
         return value
     if origin is tuple:
-        if not isinstance(value, list | tuple):
-            raise ParameterError(f"{place}: {shown(value)} is not a list; write entries that begin with a dash")
-        if len(value) > MAX_ENTRIES:
-            raise ParameterError(f"{place}: {len(value)} entries; allowed: up to {MAX_ENTRIES}; write fewer")
-        return tuple(_build(typing.get_args(kind)[0], entry, place / str(i)) for i, entry in enumerate(value))
+        return tuple(_build(typing.get_args(kind)[0], entry, at) for entry, at in _entries(value, place))
     if origin in (dict, Mapping):
         if not isinstance(value, dict):
             raise ParameterError(f"{place}: {shown(value)} is not a mapping; write name: value pairs")
@@ -224,6 +222,14 @@ def _build(kind: Any, value: Any, place: _Place) -> Any:
                 raise ParameterError(f"{place}: {shown(key)} is not a name; write name: value pairs")
         return {key: _build(typing.get_args(kind)[1], entry, place / key) for key, entry in value.items()}
     return _build_scalar(kind, value, place)
+
+
+def _entries(value: Any, place: _Place) -> list[tuple[Any, _Place]]:
+    if not isinstance(value, list | tuple):
+        raise ParameterError(f"{place}: {shown(value)} is not a list; write entries that begin with a dash")
+    if len(value) > MAX_ENTRIES:
+        raise ParameterError(f"{place}: {len(value)} entries; allowed: up to {MAX_ENTRIES}; write fewer")
+    return [(entry, place / str(i)) for i, entry in enumerate(value)]
 
 
 def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
@@ -247,6 +253,10 @@ def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
                 which: _build_choice(metadata["choices_by_name"], value, place / name / which)
                 for which, value in entries.items()
             }
+        elif "choice_list" in metadata:
+            arguments[key] = tuple(
+                _build_choice(metadata["choice_list"], item, at) for item, at in _entries(entry, place / name)
+            )
         else:
             arguments[key] = _build(hints[key], entry, place / name)
     try:
@@ -296,15 +306,22 @@ def fields_of(kind: Any, path: str = "") -> Iterator[tuple[str, dataclasses.Fiel
             yield from fields_of(hints[field.name], name)
 
 
-def anchor_paths(kind: type[Any], data: dict[str, Any], folder: Path) -> None:
+def anchor_paths(kind: type[Any], data: Any, folder: Path) -> None:
     """Let relative paths in the mapping of a dataclass of parameters count from a folder; changes `data`."""
-    for name, field in fields_of(kind):
-        *parents, leaf = name.split(".")
-        group: Any = data
-        for parent in parents:
-            group = group.get(parent) if isinstance(group, dict) else None
-        if field.metadata.get("path") and isinstance(group, dict) and isinstance(group.get(leaf), str) and group[leaf]:
-            group[leaf] = str(folder / group[leaf])
+    if not isinstance(data, dict):
+        return
+    hints = _hints(kind)
+    for field in dataclasses.fields(kind):
+        value, metadata = data.get(field.name), field.metadata
+        if metadata.get("path") and isinstance(value, str) and value:
+            data[field.name] = str(folder / value)
+        for tag, chosen in metadata.get("choices", {}).items():
+            anchor_paths(chosen, value.get(tag) if isinstance(value, dict) else None, folder)
+        for entry in value if "choice_list" in metadata and isinstance(value, list) else ():
+            for tag, chosen in metadata["choice_list"].items():
+                anchor_paths(chosen, entry.get(tag) if isinstance(entry, dict) else None, folder)
+        if dataclasses.is_dataclass(hints[field.name]):
+            anchor_paths(hints[field.name], value, folder)
 
 
 def _build_any(value: Any, place: _Place) -> Any:

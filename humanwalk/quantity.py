@@ -79,15 +79,34 @@ def only_field(kind: type[Any]) -> str | None:
     return next((field.name for field in dataclasses.fields(kind) if "only" in field.metadata), None)
 
 
+def choice_list(choices: Mapping[str, type[Any]]) -> Any:
+    """Dataclass field that holds a tuple of choices, each as in `choice`; empty by default."""
+    return dataclasses.field(default=(), metadata={"choice_list": choices})
+
+
 def file_path() -> Any:
     """Dataclass field for the path of a file; a relative one in a parameter file counts from that file's folder."""
     return dataclasses.field(default="", metadata={"path": True})
 
 
 def file_paths(parameters: Any) -> dict[str, str]:
-    """Paths of the files that a dataclass of parameters names, by field; those that are empty are left out."""
-    fields = (field.name for field in dataclasses.fields(parameters) if field.metadata.get("path"))
-    return {name: getattr(parameters, name) for name in fields if getattr(parameters, name)}
+    """Paths of the files that a tree of dataclasses names, by dotted field name; those that are empty are left out."""
+    return {name: value for name, value, metadata in _leaves(parameters, "", {}) if metadata.get("path") and value}
+
+
+def replace_file_paths[T](parameters: T, paths: Mapping[str, str]) -> T:
+    """A tree of dataclasses with other paths of files, by dotted field name as in `file_paths`."""
+    replaced: T = _with_paths(parameters, paths, "", {})
+    return replaced
+
+
+def _with_paths(value: Any, paths: Mapping[str, str], path: str, metadata: Mapping[str, Any]) -> Any:
+    if metadata.get("path"):
+        return paths.get(path, value)
+    parts = [(key, _with_paths(item, paths, name, of)) for key, item, name, of in _parts(value, path, metadata)]
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return dataclasses.replace(value, **dict(parts))
+    return tuple(item for _, item in parts) if isinstance(value, tuple) and parts else value
 
 
 def tag_of(choices: Mapping[str, type[Any]], value: Any) -> str:
@@ -140,18 +159,34 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
 
 def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Mapping[str, Any]]]:
     """Dotted name, value and metadata (unit, low, high) of every quantity in a tree of dataclasses; see `check`."""
-    for field in dataclasses.fields(parameters):
-        value = getattr(parameters, field.name)
-        name = f"{path}.{field.name}" if path else field.name
-        if "unit" in field.metadata:
-            yield name, value, field.metadata
-        elif dataclasses.is_dataclass(value):
-            choices = field.metadata.get("choices")
-            yield from numbers_of(value, f"{name}.{tag_of(choices, value)}" if choices else name)
-        else:
-            items = (
-                value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, tuple) else ()
-            )
-            for key, item in items:
-                if dataclasses.is_dataclass(item):
-                    yield from numbers_of(item, f"{name}.{key}")
+    return ((name, value, metadata) for name, value, metadata in _leaves(parameters, path, {}) if "unit" in metadata)
+
+
+def _leaves(value: Any, path: str, metadata: Mapping[str, Any]) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
+    """Dotted names, values and metadata of all fields of a tree of dataclasses that hold none themselves."""
+    parts = list(_parts(value, path, metadata))
+    for _, item, name, of_item in parts:
+        yield from _leaves(item, name, of_item)
+    if not parts:
+        yield path, value, metadata
+
+
+def _parts(value: Any, path: str, metadata: Mapping[str, Any]) -> Iterator[tuple[Any, Any, str, Mapping[str, Any]]]:
+    """Fields of a dataclass, or those entries of a tuple or mapping that are dataclasses.
+
+    Args:
+        value: at the end of `path`, in a field with `metadata`.
+
+    Yields:
+        Name of the field or key of the entry, its value, dotted name and metadata.
+    """
+    if dataclasses.is_dataclass(value):
+        prefix = f"{path}.{tag_of(metadata['choices'], value)}" if "choices" in metadata else path
+        for field in dataclasses.fields(value):
+            name = f"{prefix}.{field.name}" if prefix else field.name
+            yield field.name, getattr(value, field.name), name, field.metadata
+    elif isinstance(value, Mapping | tuple):
+        of_entry = {"choices": metadata["choice_list"]} if "choice_list" in metadata else {}
+        for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
+            if dataclasses.is_dataclass(item):
+                yield key, item, f"{path}.{key}", of_entry

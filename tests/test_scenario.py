@@ -317,7 +317,7 @@ def _numbers(kind: Any) -> Iterator[tuple[str, Any]]:
 
 
 CHOSEN = ("plane", "thesis")
-UNCHOSEN = ("contact.", "controller.balanced", "controller.recorded", "actuation.")
+UNCHOSEN = ("terrain.course", "contact.", "controller.balanced", "controller.recorded", "actuation.")
 NUMBERS = dict(_numbers(Scenario))
 
 leaves = st.one_of(

@@ -133,10 +133,9 @@ class ContactStep:
             time: [s].
         """
         parameters, h, K, C, b = self._parameters, self._step, self._K, self._C, self._bodies
-        xy = p_WQ[:, :2]
-        R_SW, mu = self._terrain.axes(xy), self._terrain.friction(xy)
+        height, R_SW, mu = self._terrain.nearest(p_WQ)
         e = np.matvec(R_SW, p_WQ - memory.anchor)
-        e[:, 2] = (p_WQ[:, 2] - self._terrain.height(xy)) * R_SW[:, 2, 2]
+        e[:, 2] = height
         r = (p_WQ.reshape(b, -1, 3) - p_WB[:, None]).reshape(-1, 3)
         J = point_jacobians(r, R_SW).reshape(b, -1, 6)
         # Velocities of the points at the end of the step with the contact forces of the last step, and what z takes.

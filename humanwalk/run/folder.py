@@ -4,7 +4,7 @@ import json
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from operator import methodcaller
 from pathlib import Path
@@ -25,7 +25,7 @@ from humanwalk.files import (
 from humanwalk.measures.signals import TIME, column_of, unit_of
 from humanwalk.measures.summary import Summary
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, file_paths, printable
+from humanwalk.quantity import ParameterError, file_paths, printable, replace_file_paths
 from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance
 from humanwalk.run.stored import MAX_ROWS, RunSummary, read_signals, read_summary
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
@@ -74,10 +74,10 @@ class Run:
         """What was simulated.
 
         Raises:
-            ParameterError: it is no scenario, or follows a file outside the run folder.
+            ParameterError: it is no scenario, or reads a file outside the run folder.
         """
         scenario = load_scenario(self.path / SCENARIO)
-        for file in file_paths(scenario.controller).values():
+        for file in file_paths(scenario).values():
             require_inside(self.path, Path(file))
         return scenario
 
@@ -206,7 +206,7 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES
     # A recording that cannot be read is refused by its reader.
     with suppress(OSError, ValueError):
-        needed += sum(Path(file).stat().st_size for file in file_paths(scenario.controller).values())
+        needed += sum(Path(file).stat().st_size for file in file_paths(scenario).values())
     with file_errors(folder, WRITABLE):
         free = shutil.disk_usage(folder).free
     if free < needed:
@@ -220,21 +220,21 @@ def require_room(folder: Path, scenario: Scenario) -> None:
 def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: Summary) -> Run:
     """Write a simulation into its folder, each file whole or not at all.
 
-    The summary comes last: a folder that has one is a complete run. A followed recording and its mapping are copied
-    into the folder, and the scenario in the folder follows the copies. The provenance is added to the summary.
+    The summary comes last: a folder that has one is a complete run. The files that the scenario reads are copied into
+    the folder, and the scenario in the folder reads the copies. The provenance is added to the summary.
     """
     origin = provenance(scenario, signals)
     metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"], **origin}).encode()}
     signals = signals.replace_schema_metadata(metadata)
-    write_text(path / SCENARIO, dump_scenario(_keep_followed(path, scenario)))
+    write_text(path / SCENARIO, dump_scenario(_keep_files(path, scenario)))
     write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
     write_text(path / SUMMARY, json.dumps({**summary, "provenance": origin}, indent=2) + "\n")
     return Run(path)
 
 
-def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
-    """Copy the files that a scenario's controller reads; returns the scenario that reads the copies."""
-    files = file_paths(scenario.controller)
+def _keep_files(path: Path, scenario: Scenario) -> Scenario:
+    """Copy the files that a scenario reads; returns the scenario that reads the copies."""
+    files = file_paths(scenario)
     names = {field: kept_name(field, file) for field, file in files.items()}
     for field, name in names.items():
         if not (path / name).exists():
@@ -242,9 +242,9 @@ def _keep_followed(path: Path, scenario: Scenario) -> Scenario:
             with suppress(ParameterError):
                 content = read_regular(Path(files[field]), MAX_FOLLOWED_BYTES)
                 write_whole(path / name, methodcaller("write_bytes", content))
-    return replace(scenario, controller=replace(scenario.controller, **names))
+    return replace_file_paths(scenario, names)
 
 
 def kept_name(field: str, file: str) -> str:
-    """Name in a run folder of the copy of a file that a field of the controller names."""
+    """Name in a run folder of the copy of a file that a field of the scenario names."""
     return f"{field}{Path(file).suffix.lower()}"

@@ -2,7 +2,6 @@
 
 import hashlib
 import platform
-from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TypedDict
@@ -11,13 +10,13 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.files import read_regular
-from humanwalk.quantity import ParameterError, file_paths
+from humanwalk.quantity import ParameterError, file_paths, replace_file_paths
 from humanwalk.scenario import Scenario, dump_scenario
 
 PACKAGES = ("humanwalk", "drake", "numpy")
 
 MAX_FOLLOWED_BYTES = 200_000_000
-"""Largest recording or mapping that is hashed and copied into a run folder."""
+"""Largest file of a scenario that is hashed and copied into a run folder."""
 
 
 class Provenance(TypedDict):
@@ -31,12 +30,12 @@ class Provenance(TypedDict):
 
 
 def provenance(scenario: Scenario, signals: pa.Table) -> Provenance:
-    """Seed, versions and SHA-256 of scenario, signals and the files that the controller reads, for JSON."""
+    """Seed, versions and SHA-256 of scenario, signals and the files that it reads, for JSON."""
     return {
         "seed": scenario.seed,
         "scenario_sha256": scenario_hash(scenario),
         "signals_sha256": signals_hash(signals),
-        "files_sha256": {field: file_hash(path) for field, path in file_paths(scenario.controller).items()},
+        "files_sha256": {field: file_hash(path) for field, path in file_paths(scenario).items()},
         "versions": versions(),
     }
 
@@ -49,8 +48,8 @@ def versions() -> dict[str, str]:
 
 def scenario_hash(scenario: Scenario) -> str:
     """SHA-256 of the complete scenario as text, without the paths of the files that it reads."""
-    controller = replace(scenario.controller, **{field: field for field in file_paths(scenario.controller)})
-    return hashlib.sha256(dump_scenario(replace(scenario, controller=controller)).encode()).hexdigest()
+    without = replace_file_paths(scenario, {field: field for field in file_paths(scenario)})
+    return hashlib.sha256(dump_scenario(without).encode()).hexdigest()
 
 
 def signals_hash(signals: pa.Table) -> str:

@@ -86,10 +86,10 @@ def _changes(run: Run, then: Provenance) -> Iterator[str]:
     """What has changed since the run."""
     if then["scenario_sha256"] != scenario_hash(run.scenario):
         yield "scenario.yaml was changed since the run, or this version reads its fields differently"
-    for field, path in file_paths(run.scenario.controller).items():
+    for field, path in file_paths(run.scenario).items():
         found = file_hash(path)
         if found is None:
-            raise ParameterError(f"follow: {path} is gone; allowed: the file that was followed; put it back")
+            raise ParameterError(f"{field}: {path} is gone; allowed: the file of the run; put it back")
         if found != then["files_sha256"].get(field):
             yield f"{path} was changed since the run"
     now = versions()

@@ -11,7 +11,8 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.numerics import Array
 from humanwalk.quantity import quantity
-from humanwalk.terrain.terrain import GroundProperties, surface_axes
+from humanwalk.terrain.face import surface_axes
+from humanwalk.terrain.terrain import GroundProperties, Terrain
 
 LENGTH, WIDTH, BEHIND = 60, 10, 6
 """Length and width of the drawn floor, and the part of its length behind the origin [m]; the half-space is infinite."""
@@ -30,7 +31,7 @@ LINE_WIDTH, MARK_WIDTH = 0.012, 0.03
 
 
 @dataclass(frozen=True)
-class Plane:
+class Plane(Terrain):
     """A plane through the origin of W, level by default."""
 
     slope: float = quantity(0.0, "rad", -0.5, 0.5)

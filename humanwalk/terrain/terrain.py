@@ -1,16 +1,35 @@
 """The protocol of all terrains: a surface z = height(x, y) with axes and friction, which adds its solids to a plant."""
 
 from collections.abc import Callable
-from typing import Protocol
+from itertools import pairwise
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from pydrake.geometry import ProximityProperties
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.numerics import Array
+from humanwalk.terrain.face import ENDLESS, Face
 
 GroundProperties = Callable[[float], ProximityProperties]
 """Function that returns the contact properties of the ground for a friction coefficient between sole and ground."""
+
+SAMPLE_SPACING = 0.01
+"""Distance of the points at which `highest_along` takes the height [m], half the thinnest obstacle."""
+
+
+class Surface(NamedTuple):
+    """The surface nearest to n points.
+
+    Attributes:
+        distance: Of the points from the surface along its normal [m], negative inside the ground, shape (n,).
+        R_SW: Axes of the surface, its normal last, shape (n, 3, 3).
+        friction: Coulomb coefficient between sole and surface, shape (n,).
+    """
+
+    distance: Array
+    R_SW: Array
+    friction: Array
 
 
 class Terrain(Protocol):
@@ -34,15 +53,45 @@ class Terrain(Protocol):
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
         """Register the geometry for contact and for pictures with a plant that is not finalized."""
 
+    def nearest(self, p_W: Array) -> Surface:
+        """Return the surface nearest to points p_W [m], shape (n, 3); here the one below or above, without walls."""
+        xy = p_W[:, :2]
+        R_SW = self.axes(xy)
+        return Surface((p_W[:, 2] - self.height(xy)) * R_SW[:, 2, 2], R_SW, self.friction(xy))
 
-def surface_axes(normal: Array) -> Array:
-    """Return R_SW of a surface from its upward normal of any length; shape (..., 3, 3) for (..., 3)."""
-    z = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
-    x = np.stack((z[..., 2], np.zeros_like(z[..., 0]), -z[..., 0]), axis=-1)
-    x /= np.linalg.norm(x, axis=-1, keepdims=True)
-    return np.stack((x, np.cross(z, x), z), axis=-2)
+    def face_at(self, xy: Array) -> Face:
+        """Return the face that contains a point xy [m], shape (2,); here the tangent plane, without end."""
+        n_x, n_y, n_z = self.axes(xy)[2].tolist()
+        gradient = (-n_x / n_z, -n_y / n_z)
+        intercept = float(self.height(xy)) - gradient[0] * float(xy[0]) - gradient[1] * float(xy[1])
+        end = (ENDLESS, ENDLESS)
+        return Face((-ENDLESS, -ENDLESS), end, intercept, gradient, float(self.friction(xy)), (0.86, 0.87, 0.86))
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """Faces that a map of the ground shows in their colors; none where it is uniform."""
+        return ()
 
 
 def height_at(terrain: Terrain, point: complex) -> float:
     """Return the height [m] of a terrain at a point x + iy [m]."""
     return float(terrain.height(np.array((point.real, point.imag))))
+
+
+def highest_along(terrain: Terrain, path: Array, half_width: float) -> float:
+    """Return the greatest height [m] of a terrain under a strip, such as the one that a swinging foot crosses.
+
+    Args:
+        terrain: The ground.
+        path: Points of the middle line of the strip [m], shape (n, 2), n >= 2.
+        half_width: Distance of the strip's edges from its middle line [m].
+    """
+    points = []
+    for start, end in pairwise(path):
+        length = float(np.hypot(*(end - start)))
+        along = (end - start) / max(length, SAMPLE_SPACING)
+        s = np.linspace(-half_width, length + half_width, 2 + int((length + 2.0 * half_width) / SAMPLE_SPACING))
+        c = np.linspace(-half_width, half_width, 2 + int(2.0 * half_width / SAMPLE_SPACING))
+        normal = np.array((-along[1], along[0]))
+        points.append((start + s[:, None, None] * along + c[:, None] * normal).reshape(-1, 2))
+    return float(terrain.height(np.concatenate(points)).max())

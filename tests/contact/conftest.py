@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from humanwalk.numerics import Array
-from humanwalk.terrain.terrain import surface_axes
+from humanwalk.terrain import Terrain
+from humanwalk.terrain.face import surface_axes
 
 
 @dataclass(frozen=True)
-class Waves:
+class Waves(Terrain):
     """z = amplitude sin(x) cos(y)."""
 
     amplitude: float = 0.2
     mu: float = 0.7
 
-    def height(self, xy: Array) -> float | Array:
+    def height(self, xy: Array) -> Array:
         x, y = np.moveaxis(xy, -1, 0)
         return self.amplitude * np.sin(x) * np.cos(y)
 

@@ -17,7 +17,7 @@ from humanwalk.contact.contact_step import (
 )
 from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
-from humanwalk.terrain.terrain import surface_axes
+from humanwalk.terrain.face import surface_axes
 
 LAW = AsperityParameters()
 LEVEL = Plane()

@@ -72,16 +72,25 @@ def run(walked: tuple[Path, tuple[str, str]], tmp_path: Path) -> Run:
 
 def test_recording_and_mapping_are_kept_with_their_hashes(run: Any, walked: tuple[Path, tuple[str, str]]) -> None:
     hashes = run.summary["provenance"]
-    assert (hashes["files_sha256"]["angles"], hashes["files_sha256"]["mapping"]) == walked[1]
-    assert file_hash(str(run.path / "angles.mot")) == hashes["files_sha256"]["angles"]
-    assert file_hash(str(run.path / "mapping.yaml")) == hashes["files_sha256"]["mapping"]
-    assert run.scenario.controller.angles == str(run.path / "angles.mot")
+    assert (
+        hashes["files_sha256"]["controller.recorded.angles"],
+        hashes["files_sha256"]["controller.recorded.mapping"],
+    ) == walked[1]
+    assert (
+        file_hash(str(run.path / "controller.recorded.angles.mot"))
+        == hashes["files_sha256"]["controller.recorded.angles"]
+    )
+    assert (
+        file_hash(str(run.path / "controller.recorded.mapping.yaml"))
+        == hashes["files_sha256"]["controller.recorded.mapping"]
+    )
+    assert run.scenario.controller.angles == str(run.path / "controller.recorded.angles.mot")
     assert {entry.name for entry in run.path.iterdir()} == {
         "scenario.yaml",
         "signals.parquet",
         "summary.json",
-        "angles.mot",
-        "mapping.yaml",
+        "controller.recorded.angles.mot",
+        "controller.recorded.mapping.yaml",
     }
 
 
@@ -100,14 +109,14 @@ def test_moved_run_is_walked_again_from_its_scenario(run: Run, tmp_path: Path, m
     np.testing.assert_array_equal(again["com.z"], run["com.z"][: again.signals.num_rows])
 
 
-@pytest.mark.parametrize("name", ["angles.mot", "mapping.yaml"])
+@pytest.mark.parametrize("name", ["controller.recorded.angles.mot", "controller.recorded.mapping.yaml"])
 def test_copy_that_was_changed_is_noted(run: Run, name: str) -> None:
     (run.path / name).write_text((run.path / name).read_text() + "\n")
     assert [note for note in reproduce(run).notes if note.endswith(f"{name} was changed since the run")]
 
 
 def test_missing_copy_is_a_one_line_error(run: Run) -> None:
-    (run.path / "angles.mot").unlink()
+    (run.path / "controller.recorded.angles.mot").unlink()
     with pytest.raises(ParameterError, match=r"angles\.mot is gone"):
         reproduce(Run.open(run.path))
 
@@ -136,8 +145,8 @@ def test_recording_that_is_moved_while_it_is_walked_loses_no_run(tmp_path: Path)
     outcome = simulate(load_scenario("thesis", following(recording) | {"duration": "0.01"}))
     recording.rename(tmp_path / "moved.mot")
     run = outcome.save(tmp_path / "run")
-    assert run.scenario.controller.angles == str(run.path / "angles.mot")  # type: ignore[attr-defined]
-    assert run.summary["provenance"]["files_sha256"]["angles"] is None
+    assert run.scenario.controller.angles == str(run.path / "controller.recorded.angles.mot")  # type: ignore[attr-defined]
+    assert run.summary["provenance"]["files_sha256"]["controller.recorded.angles"] is None
     with pytest.raises(ParameterError, match=r"angles\.mot is gone"):
         reproduce(run)
 
@@ -162,7 +171,7 @@ def test_kinematic_run_is_announced_and_has_a_replay_and_no_plots(kinematic: tup
         "scenario.yaml",
         "signals.parquet",
         "summary.json",
-        "angles.mot",
+        "controller.recorded.angles.mot",
         "replay.html",
     }
     assert run.summary["physics"] is False

@@ -11,7 +11,8 @@ from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, check
 from humanwalk.terrain import TERRAINS, Plane
-from humanwalk.terrain.terrain import height_at, surface_axes
+from humanwalk.terrain.face import surface_axes
+from humanwalk.terrain.terrain import height_at
 
 SLOPES = st.floats(-0.5, 0.5)
 COORDINATES = st.floats(-50.0, 50.0)
