@@ -15,6 +15,7 @@ from humanwalk.parameter_file import fields_of
 from humanwalk.quantity import ParameterError
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, parse_scenario
+from humanwalk.terrain import PIECES
 from humanwalk.walking.command import CommandPoint
 from humanwalk.walking.push import Push
 
@@ -48,24 +49,34 @@ ENTRIES = {
     "controller.balanced.command.points": ends(CommandPoint),
     "contact.asperity.pressure_multiplier": ends(Knot),
     "contact.asperity.time_multiplier": ends(Knot),
+    "terrain.course.pieces": [(f"{tag}.{name}", value) for tag, kind in PIECES.items() for name, value in ends(kind)],
 }
-"""Numbers of the entries of lists."""
+"""Numbers of the entries of lists; those of one out of several kinds follow its tag."""
+
+
+def entry_text(name: str, value: str) -> str:
+    """A list of one entry as YAML, with one number."""
+    *tags, leaf = name.split(".")
+    fields = f"{leaf}: {value}" + (", file: map.csv" if tags == ["height_map"] else "")
+    return f"[{{{tags[0]}: {{{fields}}}}}]" if tags else f"[{{{fields}}}]"
+
 
 LONGEST = ("duration", "3600.0")
 """The one number that is read but not simulated."""
 
 CASES = [(name, name, value) for name, value in ends(Scenario) if (name, value) != LONGEST]
 CASES += [
-    (f"{name}.0.{entry}", name, f"[{{{entry}: {value}}}]") for name, found in ENTRIES.items() for entry, value in found
+    (f"{name}.0.{entry}", name, entry_text(entry, value)) for name, found in ENTRIES.items() for entry, value in found
 ]
 
 
 @pytest.fixture(autouse=True)
 def working_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder with a recording of standing still."""
+    """A folder with a recording of standing still and a map of heights."""
     columns = [COORDINATES[name][0] for name in REQUIRED_JOINTS]
     still = MotionTable(tuple(columns), np.array([0.0, 1.0]), np.zeros((2, len(columns))), in_degrees=True)
     (tmp_path / "still.mot").write_text(storage_text("still", still))
+    (tmp_path / "map.csv").write_text("0,0.02\n0.01,0\n")
     monkeypatch.chdir(tmp_path)
 
 

@@ -23,6 +23,7 @@ from humanwalk.scenario import (
     parse_scenario,
     shipped_scenarios,
 )
+from humanwalk.terrain import PIECES
 
 
 def refusal(text: str = "", overrides: dict[str, str] | None = None) -> str:
@@ -312,7 +313,7 @@ def _numbers(kind: Any) -> Iterator[tuple[str, Any]]:
     for name, field in fields_of(kind):
         if "low" in field.metadata and not name.startswith(UNCHOSEN):
             low, high = field.metadata["low"], field.metadata["high"]
-            whole = (isinstance(field.default, int) and name == "seed") or name.endswith("max_iterations")
+            whole = (isinstance(field.default, int) and name in ("seed", "number")) or name.endswith("max_iterations")
             yield name, st.integers(int(low), int(high)) if whole else st.floats(low, high)
 
 
@@ -392,6 +393,48 @@ def test_every_valid_number_survives_dump_and_parse(data: Any) -> None:
             found = found if part in CHOSEN else getattr(found, part)
         assert found == value
     assert parse_scenario(dump_scenario(scenario)) == scenario
+
+
+@pytest.mark.parametrize(
+    ("pieces", "message"),
+    [
+        ("3", "terrain.course.pieces: 3 is not a list; write entries"),
+        ("[flt]", "terrain.course.pieces.0: 'flt' is unknown; allowed: flat, slope, "),
+        ("[flat, {slope: {}, flat: {}}]", "terrain.course.pieces.1: "),
+        ("[{slope: {slop: 1}}]", "terrain.course.pieces.0.slope.slop: no such field; allowed: "),
+        ("[flat, {slope: {slope: 10}}]", "terrain.course.pieces.1.slope.slope: 10 is out of range; allowed: -0.5 to"),
+        ("[{stairs: {number: 2.5}}]", "terrain.course.pieces.0.stairs.number: 2.5 is not a whole number"),
+        ("[{stairs: {direction: left}}]", "terrain.course.pieces.0.stairs.direction: 'left' is unknown; allowed: up"),
+        ("[{stairs: {rise: .nan}}]", "terrain.course.pieces.0.stairs.rise: nan is out of range"),
+        ("[height_map]", "terrain.course.pieces.0.height_map.file: no file"),
+    ],
+)
+def test_piece_of_a_course_that_is_none_is_refused_in_one_line(pieces: str, message: str) -> None:
+    with pytest.raises(ParameterError) as error:
+        parse_scenario(f"terrain: {{course: {{pieces: {pieces}}}}}")
+    assert str(error.value).startswith(message)
+    assert str(error.value).isprintable()
+
+
+PIECE = st.one_of(
+    *(
+        st.fixed_dictionaries(
+            {tag: st.fixed_dictionaries({}, optional={name: strategy for name, strategy in _numbers(kind)})}
+        )
+        for tag, kind in PIECES.items()
+        if tag != "height_map"
+    ),
+    st.sampled_from([tag for tag in PIECES if tag != "height_map"]),
+)
+
+
+@settings(max_examples=30)
+@given(st.lists(PIECE, max_size=5))
+def test_course_survives_dump_and_parse(pieces: list[Any]) -> None:
+    scenario = parse_scenario(yaml.safe_dump({"terrain": {"course": {"pieces": pieces}}}))
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+    tags = [next(iter(piece)) if isinstance(piece, dict) else piece for piece in pieces]
+    assert [type(piece) for piece in scenario.terrain.pieces] == [PIECES[tag] for tag in tags]  # type: ignore[attr-defined]
 
 
 @given(st.dictionaries(st.text(st.characters(categories=["L", "N"]), min_size=1), st.floats(-math.pi, math.pi)))

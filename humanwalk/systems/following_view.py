@@ -24,13 +24,16 @@ SUPPORT_COLOR = Rgba(0.10, 0.35, 0.85, 1.0)
 LATERAL_SLACK = 0.1
 """Distance from the line of a straight walk over which the view stays [m]: sway is seen as such."""
 
+AROUND = np.column_stack((np.linspace(-0.6, 0.6, 25), np.zeros(25)))
+"""Points around the pelvis, along x, whose mean height the view follows [m]: about two steps of a walk or stairs."""
+
 
 class FollowingView(LeafSystem):
     """Keeps the pelvis near Meshcat's origin, and draws forces as arrows.
 
     The scene moves rather than the camera: the light stays on the walker, the viewer can turn and zoom freely, and a
-    recording contains the motion. It moves along x, along y beyond LATERAL_SLACK, and vertically with the ground below
-    the pelvis. Whether it moves is a parameter of the context.
+    recording contains the motion. It moves along x, along y beyond LATERAL_SLACK, and vertically with the mean height
+    of the ground around the pelvis, which changes gradually on stairs. Whether it moves is a parameter of the context.
 
     Inputs:
         query_object: SceneGraph's.
@@ -61,7 +64,7 @@ class FollowingView(LeafSystem):
         time, scene = context.get_time(), self._query_object.Eval(context)
         p_WP = _position(scene, PELVIS)
         if context.get_abstract_parameter(self._following).get_value():
-            ground = float(self._terrain.height(p_WP[:2]))
+            ground = float(self._terrain.height(p_WP[:2] + AROUND).mean())
             lateral = p_WP[1] - np.clip(p_WP[1], -LATERAL_SLACK, LATERAL_SLACK)
             self._meshcat.SetTransform(SCENE, RigidTransform(-np.array([p_WP[0], lateral, ground])), time)
         feet = self._value(self._foot_forces, context).reshape(2, 8)

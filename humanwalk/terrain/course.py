@@ -13,7 +13,7 @@ from humanwalk.terrain.height_map import HeightMap
 from humanwalk.terrain.piece import MAX_FACES, Piece
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.slope import Flat, Slope
-from humanwalk.terrain.solids import add_floor, add_pictures, add_solids
+from humanwalk.terrain.solids import add_pictures, add_solids
 from humanwalk.terrain.steps import Curb, Obstacle, Stairs, Stones
 from humanwalk.terrain.terrain import GroundProperties, Surface, Terrain
 
@@ -32,8 +32,8 @@ PIECES: dict[str, type[Piece]] = {
 FLOOR_DEPTH = 0.5
 """Depth of the ground beside the strip below the lowest piece [m]."""
 
-BESIDE = 10.0
-"""Width of the drawn ground on each side of the strip [m]."""
+SUNK = 0.1
+"""Thickness of the ground beside the strip, down to the bottom of all solids [m]."""
 
 FLOOR_COLOR: Color = (0.52, 0.55, 0.54)
 
@@ -79,8 +79,16 @@ class Course(Terrain):
                 )
             x, z = x + max(face.upper[0] for face in own), z + piece.end_height
         faces.append(self._level(x, x + ENDLESS, z))
-        floor = min(face.corners[:, 2].min() for face in faces) - FLOOR_DEPTH
-        return FaceMap(faces, self.width, float(floor), self.friction_coefficient, FLOOR_COLOR)
+        return FaceMap(faces, self._beside(x + ENDLESS, min(face.lowest for face in faces) - FLOOR_DEPTH))
+
+    def _beside(self, end: float, height: float) -> tuple[Face, Face]:
+        """Ground to the right and left of the strip, up to an end at a height [m]."""
+        half, level = 0.5 * self.width, (0.0, 0.0)
+        right, left = ((-ENDLESS, -ENDLESS), (end, -half)), ((-ENDLESS, half), (end, ENDLESS))
+        return (
+            Face(*right, height, level, self.friction_coefficient, FLOOR_COLOR),
+            Face(*left, height, level, self.friction_coefficient, FLOOR_COLOR),
+        )
 
     @property
     def faces(self) -> tuple[Face, ...]:
@@ -102,13 +110,8 @@ class Course(Terrain):
         return self._map.face_at(xy)
 
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
-        """Register one solid for each face and one for the ground beside them, and a mesh for each color."""
-        faces, floor = self.faces, self._map.floor
-        add_solids(plant, faces, floor, properties)
-        add_floor(plant, floor, self.friction_coefficient, properties)
-        beside = (ENDLESS, 0.5 * self.width + BESIDE)
-        add_pictures(
-            plant,
-            faces,
-            Face((-beside[0], -beside[1]), beside, floor, (0.0, 0.0), self.friction_coefficient, FLOOR_COLOR),
-        )
+        """Register one solid for each face and for the ground on each side, and a mesh for each color."""
+        faces, beside = self._map.faces, self._map.beside
+        bottom = beside[0].intercept - SUNK
+        add_solids(plant, (*faces, *beside), bottom, properties)
+        add_pictures(plant, faces, beside, bottom)

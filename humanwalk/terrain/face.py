@@ -50,6 +50,11 @@ class Face(NamedTuple):
         xy = np.array(((x0, y0), (x1, y0), (x1, y1), (x0, y1)))
         return np.column_stack((xy, self.height(xy)))
 
+    @property
+    def lowest(self) -> float:
+        """Height of the lowest corner [m]."""
+        return float(self.corners[:, 2].min())
+
     def height(self, xy: Array) -> Array:
         """Height of the plane [m] at points xy [m], within the face or not; shape (...) for (..., 2)."""
         height: Array = self.intercept + xy @ np.array(self.gradient)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from humanwalk.numerics import Array, Indices
-from humanwalk.terrain.face import ENDLESS, Color, Face
+from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Surface
 
 WALL_NORMALS = np.array(((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)))
@@ -27,30 +27,26 @@ class FaceMap:
 
     Attributes:
         faces: The strip's, in the order of columns, each along y.
-        floor: Height of the level ground beside the strip [m].
+        beside: Level ground to the right and left of it.
     """
 
-    def __init__(self, faces: Sequence[Face], width: float, floor: float, friction: float, color: Color) -> None:
+    def __init__(self, faces: Sequence[Face], beside: tuple[Face, Face]) -> None:
         """Initialize the map.
 
         Args:
             faces: Tile the strip without gap or overlap.
-            width: Of the strip, whose middle is y = 0 [m].
-            floor: Height of the ground beside the strip [m].
-            friction, color: Of the ground beside the strip.
+            beside: Ground to the right and left of the strip, along all of it.
         """
-        self.faces, self.floor = tuple(sorted(faces, key=lambda face: face.lower)), floor
+        self.faces, self.beside = tuple(sorted(faces, key=lambda face: face.lower)), beside
         begins = sorted({face.lower[0] for face in self.faces})
         ends = {face.lower[0]: face.upper[0] for face in self.faces}
         sides = [
-            Face((x, y0), (ends[x], y1), floor, (0.0, 0.0), friction, color)
-            for x in begins
-            for y0, y1 in ((-ENDLESS, -0.5 * width), (0.5 * width, ENDLESS))
+            side._replace(lower=(x, side.lower[1]), upper=(ends[x], side.upper[1])) for x in begins for side in beside
         ]
         cells = sorted([*self.faces, *sides], key=lambda face: face.lower)
         self._whole = _joined(cells)
         # One sorted list finds column and face: the key of a point is its y plus the span of a column times its number.
-        self._edge = 0.5 * width + 1.0
+        self._edge = beside[1].lower[1] + 1.0
         self._span = 2.0 * self._edge + 1.0
         self._begins = np.array(begins)
         self._lower, self._upper = np.array([cell.lower for cell in cells]), np.array([cell.upper for cell in cells])

@@ -61,14 +61,17 @@ class HeightMap(Piece):
 
     def faces(self, width: float) -> list[Face]:
         """See `Piece.faces`. Rows beyond the width are left out; the outermost rows reach to the edges."""
-        heights = read_heights(Path(self.file), self.black, self.white)[::-1].T
+        try:
+            heights = read_heights(Path(self.file), self.black, self.white)[::-1].T
+        except ParameterError as error:
+            raise ParameterError(f"file: {error}") from None
         columns, rows = heights.shape
         xs = self.cell_size * np.arange(columns + 1.0)
         edges = self.cell_size * (np.arange(rows + 1.0) - 0.5 * rows)
         edges[0], edges[-1] = min(edges[0], -0.5 * width), max(edges[-1], 0.5 * width)
         ys = np.clip(edges, -0.5 * width, 0.5 * width)
         kept = np.flatnonzero(np.diff(ys) > 0.0)
-        require_few_faces(columns * kept.size, "give a coarser map")
+        require_few_faces(columns * kept.size, "file", "give a coarser map")
         return [
             self.face((xs[i], xs[i + 1]), (ys[j], ys[j + 1]), float(heights[i, j]))
             for i in range(columns)
@@ -142,7 +145,8 @@ def _npy(content: bytes, name: str) -> Array:
             warnings.simplefilter("ignore")
             shape, fortran_order, kind = NPY_HEADERS[np.lib.format.read_magic(file)](file)
         data = content[file.tell() :]
-    except (ValueError, KeyError, SyntaxError, TypeError, MemoryError, RecursionError, EOFError):
+    except Exception:
+        # NumPy lets many kinds of errors out of damaged headers, which it reads as Python.
         raise ParameterError(fix) from None
     if len(shape) != 2 or kind.kind not in "fiu" or kind.itemsize > 8:
         raise ParameterError(fix)

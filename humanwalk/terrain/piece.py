@@ -11,8 +11,8 @@ from humanwalk.terrain.face import Color, Face
 
 Interval = tuple[float, float]
 
-MAX_FACES = 20_000
-"""Largest number of faces of a course."""
+MAX_FACES = 2000
+"""Largest number of faces of a course; Drake takes five seconds to register as many solids, and twice for 1.5 times."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def intervals(length: float, size: float, begin: float = 0.0) -> list[Interval]:
     return list(pairwise(edges.tolist()))
 
 
-def require_few_faces(number: int, fix: str) -> None:
-    """Raise ParameterError, before they are made, if there are more than `MAX_FACES` faces."""
+def require_few_faces(number: int, field: str, fix: str) -> None:
+    """Raise ParameterError, before they are made, if a piece has more than `MAX_FACES` faces because of a field."""
     if number > MAX_FACES:
-        raise ParameterError(f"{number} faces; allowed: up to {MAX_FACES} in a course; {fix}")
+        raise ParameterError(f"{field}: {number} faces; allowed: up to {MAX_FACES} in a course; {fix}")

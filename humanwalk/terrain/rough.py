@@ -31,7 +31,7 @@ class Rough(Piece):
     def faces(self, width: float) -> list[Face]:
         xs = intervals(self.length, self.cell_size)
         ys = intervals(width, self.cell_size, begin=-0.5 * width)
-        require_few_faces(len(xs) * len(ys), "choose a larger cell_size")
+        require_few_faces(len(xs) * len(ys), "cell_size", "choose a larger one")
         heights = np.random.default_rng(self.seed).uniform(-self.height, self.height, (len(xs), len(ys)))
         rows = zip(xs, heights.tolist(), strict=True)
         return [self.face(x, y, height) for x, row in rows for y, height in zip(ys, row, strict=True)]

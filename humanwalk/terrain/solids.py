@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 from pydrake.common import MemoryFile
-from pydrake.geometry import Box, Convex, HalfSpace, InMemoryMesh, Mesh, Shape
+from pydrake.geometry import Box, Convex, InMemoryMesh, Mesh, Shape
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 
@@ -31,43 +31,38 @@ GRIP, SLIP = 0.5, 0.1
 BEHIND, AHEAD = 6.0, 54.0
 """Extent of the drawn ground before the origin and behind the last piece [m]; the solids have no end."""
 
-SUNK = 0.1
-"""Distance of the bottom of all solids below the floor beside them [m]."""
+BESIDE = 10.0
+"""Width of the drawn ground on each side of the strip [m]."""
 
 PRISM = np.array(((4, 5, 6, 7), (3, 2, 1, 0), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)))
 """Faces of a prism, counterclockwise seen from outside: corners of the bottom 0 to 3, those of the top above them."""
 
 
-def add_solids(plant: MultibodyPlant, faces: Sequence[Face], floor: float, properties: GroundProperties) -> None:
+def add_solids(plant: MultibodyPlant, faces: Sequence[Face], bottom: float, properties: GroundProperties) -> None:
     """Register one solid for each face, whose friction is the face's.
 
     Args:
         plant: Not finalized.
-        faces: All of one ground.
-        floor: Height of the ground beside the faces [m].
+        faces: All of one ground. Among many solids a half-space may crash Drake (drake#19263): none is used.
+        bottom: Height of the lower faces of all solids [m].
         properties: For contact.
     """
     for i, face in enumerate(faces):
-        X_WG, shape = _solid(face, floor - SUNK)
+        X_WG, shape = _solid(face, bottom)
         plant.RegisterCollisionGeometry(plant.world_body(), X_WG, shape, f"ground_{i}", properties(face.friction))
 
 
-def add_floor(plant: MultibodyPlant, height: float, friction: float, properties: GroundProperties) -> None:
-    """Register the ground beside the faces: a half-space at a height [m]."""
-    X_WG = RigidTransform(np.array((0.0, 0.0, height)))
-    plant.RegisterCollisionGeometry(plant.world_body(), X_WG, HalfSpace(), "ground_beside", properties(friction))
-
-
-def add_pictures(plant: MultibodyPlant, faces: Sequence[Face], floor: Face) -> None:
+def add_pictures(plant: MultibodyPlant, faces: Sequence[Face], beside: Sequence[Face], bottom: float) -> None:
     """Register a mesh for each color.
 
     Args:
         plant: Not finalized.
         faces: In the order of columns, each along y.
-        floor: The ground beside them.
+        beside: The ground beside them, drawn over `BESIDE`.
+        bottom: Height of the lower faces of all solids [m].
     """
-    begin = -BEHIND
-    end = max(face.lower[0] for face in faces) + AHEAD
+    begin, end = -BEHIND, max(face.lower[0] for face in faces) + AHEAD
+    half = BESIDE + max(face.upper[1] for face in faces)
     prisms: dict[Color, list[Array]] = defaultdict(list)
     column, row, x = 0, 0, -np.inf
     for face in faces:
@@ -75,8 +70,11 @@ def add_pictures(plant: MultibodyPlant, faces: Sequence[Face], floor: Face) -> N
         for i, tiles in enumerate(_clipped(face, begin, end).tiles(TILE)):
             for j, tile in enumerate(tiles):
                 color = shown_color(face, SHADES[(column + row + i + j) % 2])
-                prisms[color].append(_prism(tile, floor.intercept - SUNK))
-    prisms[floor.color].append(_prism(_clipped(floor, begin, end), floor.intercept - SUNK))
+                prisms[color].append(_prism(tile, bottom))
+    for face in beside:
+        drawn = _clipped(face, begin, end)
+        lower, upper = (drawn.lower[0], max(drawn.lower[1], -half)), (drawn.upper[0], min(drawn.upper[1], half))
+        prisms[face.color].append(_prism(drawn._replace(lower=lower, upper=upper), bottom))
     for i, (color, solids) in enumerate(prisms.items()):
         mesh = Mesh(InMemoryMesh(mesh_file=MemoryFile(_obj(solids), ".obj", f"ground_{i}")))
         plant.RegisterVisualGeometry(plant.world_body(), RigidTransform(), mesh, f"ground_{i}", np.array((*color, 1.0)))
@@ -98,7 +96,7 @@ def _clipped(face: Face, begin: float, end: float) -> Face:
 def _solid(face: Face, bottom: float) -> tuple[RigidTransform, Shape]:
     """Pose and shape of what is below a face: a box below a level one, which Drake collides fastest."""
     if not face.is_level:
-        return RigidTransform(), Convex(InMemoryMesh(mesh_file=MemoryFile(_obj([_prism(face, bottom)]), ".obj", "")))
+        return RigidTransform(), Convex(_prism(face, bottom).T, "ramp")
     (x0, y0), (x1, y1), top = face.lower, face.upper, face.intercept
     center = np.array((x0 + x1, y0 + y1, bottom + top)) / 2.0
     return RigidTransform(center), Box(x1 - x0, y1 - y0, top - bottom)

@@ -87,7 +87,7 @@ HOLD = """() => {
             const size = radius * pixelsPerMeter;
             object.castShadow = size > 12;
             const coarse = size < 5 ? 0 : size < 12 ? 1 : size < 50 ? 2 : 3;
-            const {type, parameters: {radius: r, height: h}} = object.geometry;
+            const {type, parameters: {radius: r, height: h} = {}} = object.geometry;
             if (type === "SphereGeometry" && coarse < 3) object.geometry = round[coarse];
             if (type === "CapsuleGeometry" && coarse < 3)
                 object.geometry = new THREE.CapsuleGeometry(r, h, 2 + coarse, 8 + 2 * coarse);

@@ -16,11 +16,11 @@ from humanwalk.choices.controller import Command
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.numerics import Array
 from humanwalk.parameter_file import fields_of
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.run.recorder import Recorder
 from humanwalk.scenario import Scenario, dump_scenario, parse_scenario
 from humanwalk.systems.signal import Signal
-from humanwalk.terrain import TERRAINS, Plane
+from humanwalk.terrain import PIECES, TERRAINS, Course, Face, Piece, Plane
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,22 @@ class Plateau(Plane):
 
     def height(self, xy: Array) -> Any:
         return super().height(xy) + self.rise
+
+
+@dataclass(frozen=True)
+class Kerf(Piece):
+    """Level ground with a slit across."""
+
+    slit: float = quantity(0.1, "m", 0.01, 1.0)
+    """Its extent along x."""
+
+    def faces(self, width: float) -> list[Face]:
+        begin, end = 1.0, 1.0 + self.slit
+        return [
+            self.across((0.0, begin), width, 0.0),
+            self.across((begin, end), width, -0.3),
+            self.across((end, 2.0 + self.slit), width, 0.0),
+        ]
 
 
 @dataclass(frozen=True)
@@ -99,3 +115,16 @@ def test_signals_of_a_new_system_are_recorded(scenario: Any) -> None:
     simulator.AdvanceTo(0.008)
     table = recorder.table(simulator.get_context())
     assert table["statue.answer"].to_pylist() == [42.0] * 3
+
+
+def test_a_course_takes_a_new_piece(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PIECES, "kerf", Kerf)
+    scenario = parse_scenario("terrain: {course: {pieces: [{kerf: {slit: 0.2}}, slope, kerf]}}\nduration: 0.01")
+    assert isinstance(scenario.terrain, Course)
+    assert scenario.terrain.pieces[0] == Kerf(slit=0.2)
+    assert parse_scenario(dump_scenario(scenario)) == scenario
+    x = np.array((1.9, 2.1, 2.3))
+    np.testing.assert_array_equal(scenario.terrain.height(np.column_stack((x, 0.0 * x))), (0.0, -0.3, 0.0))
+    with pytest.raises(ParameterError, match=r"^terrain\.course\.pieces\.0\.kerf\.slit: 2 is out of range"):
+        parse_scenario("terrain: {course: {pieces: [{kerf: {slit: 2}}]}}")
+    make_walker(scenario)

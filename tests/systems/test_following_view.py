@@ -17,7 +17,8 @@ from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.following_view import LATERAL_SLACK, SCENE, FollowingView
 from humanwalk.systems.force_arrow import HEAD_LENGTH, LENGTH_PER_FORCE
-from humanwalk.terrain import Plane
+from humanwalk.terrain import Course, Plane, Terrain
+from humanwalk.terrain.steps import Curb
 from humanwalk.view.replay import make_meshcat
 
 P_WP = np.array([3.0, 0.4, 1.2])
@@ -41,7 +42,7 @@ def transform(meshcat: Any, path: Any) -> RigidTransform:
 
 def show(
     meshcat: Meshcat,
-    terrain: Plane,
+    terrain: Terrain,
     forces: list[float] | None = None,
     following: bool = True,
     **inputs: list[float],
@@ -75,6 +76,12 @@ def test_scene_moves_against_the_walker_and_down_with_the_ground(meshcat: Meshca
     show(meshcat, Plane(slope=slope))
     expected = [-P_WP[0], LATERAL_SLACK - P_WP[1], -P_WP[0] * np.tan(slope)]
     np.testing.assert_allclose(transform(meshcat, SCENE).translation(), expected, atol=1e-12)
+
+
+def test_scene_rises_gradually_with_a_step(meshcat: Meshcat) -> None:
+    """The curb is 0.3 m ahead of the pelvis: a quarter of the ground around is above it."""
+    show(meshcat, Course((Curb(height=0.2),), run_up=P_WP[0] + 0.3))
+    assert transform(meshcat, SCENE).translation()[2] == pytest.approx(-0.25 * 0.2, abs=0.01)
 
 
 def test_arrow_starts_at_the_center_of_pressure_and_points_along_the_force(meshcat: Any) -> None:

@@ -193,7 +193,7 @@ def test_many_points_have_the_values_of_each(course: Course) -> None:
 @given(x=st.floats(-1e3, 1e3), y=st.floats(1.51, 1e3), sign=st.sampled_from((-1.0, 1.0)))
 def test_beside_the_strip_the_ground_is_lower(x: float, y: float, sign: float) -> None:
     beside = np.array((x, sign * y))
-    assert ALL.height(beside) == min(face.corners[:, 2].min() for face in ALL.faces) - 0.5
+    assert ALL.height(beside) == min(face.lowest for face in ALL.faces) - 0.5
     np.testing.assert_array_equal(ALL.axes(beside), np.eye(3))
 
 
@@ -328,7 +328,7 @@ def test_a_scenario_can_name_every_piece() -> None:
     check(ALL)
 
 
-@pytest.mark.parametrize("piece", [Rough(length=1000.0, cell_size=0.05), *[Rough(length=300.0, cell_size=0.2)] * 2])
+@pytest.mark.parametrize("piece", [Rough(length=1000.0, cell_size=0.05), Rough(length=12.0, cell_size=0.2)])
 def test_a_course_of_too_many_faces_is_refused(piece: Piece) -> None:
     course = Course((piece, piece))
     with pytest.raises(ParameterError, match=rf"^terrain\.course\.pieces\.[01]\.rough.*allowed: up to {MAX_FACES}"):

@@ -1,5 +1,6 @@
 """External forces: ground reaction and center of pressure at the end of a run, support of the pelvis over time."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Literal
 
@@ -15,8 +16,11 @@ from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
+from humanwalk.terrain import Face
+from humanwalk.terrain.solids import shown_color
 from humanwalk.view.plots.drawing import (
     AXIS_COLORS,
+    DESIRED,
     INK,
     SIDE,
     curve,
@@ -79,6 +83,7 @@ def center_of_pressure(run: Run) -> Figure | None:
     dot = partial(Line2D, [], [], marker="o", markersize=4, linestyle="")
     dots = [dot(color=SIDE[side], label=f"center of pressure, {side.lower()}") for side in SIDES]
     axes.margins(x=0.02)
+    _ground(axes, run.scenario.terrain.faces)
     true_proportions(figure)
     label(axes, "forward x [m]", "left y [m]")
     legend(axes, [line, *dots])
@@ -111,6 +116,20 @@ def support(run: Run, what: Literal["force", "torque"]) -> Figure | None:
 def _last(run: Run, seconds: float) -> tuple[Array, Mask]:
     rows = run.time >= run.time[-1] - seconds
     return run.time[rows], rows
+
+
+def _ground(axes: Axes, faces: Sequence[Face]) -> None:
+    """Draw the faces of the ground in view behind everything else."""
+    (left, right), (low, high) = view = axes.get_xlim(), axes.get_ylim()
+    for face in faces:
+        (x0, y0), (x1, y1) = face.lower, face.upper
+        x0, x1, y0, y1 = max(x0, left), min(x1, right), max(y0, low), min(y1, high)
+        if x0 < x1 and y0 < y1:
+            color = (*shown_color(face), 0.6)
+            axes.add_patch(
+                Rectangle((x0, y0), x1 - x0, y1 - y0, facecolor=color, edgecolor=DESIRED, linewidth=0.5, zorder=0)
+            )
+    axes.set(xlim=view[0], ylim=view[1])
 
 
 def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
