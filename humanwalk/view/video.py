@@ -16,6 +16,8 @@ from pathlib import Path
 from queue import Queue
 from threading import Event
 
+from PIL import Image, ImageDraw, ImageFont
+
 from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
@@ -246,10 +248,6 @@ def write_snapshot(
     Raises:
         ParameterError: No run or replay, a time outside it, a suffix other than .png, or missing programs.
     """
-    try:
-        from PIL import Image, ImageDraw, ImageFont
-    except ImportError:
-        raise missing_package("pillow", "video") from None
     opened = Run.open(run)
     page, duration = opened.replay, replay_duration(opened.summary)
     if output.suffix.lower() != ".png":
