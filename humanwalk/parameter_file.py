@@ -52,18 +52,25 @@ def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> No
     group: dict[str, Any] | list[Any] = data
     for depth, (part, below) in enumerate(pairwise(parts), 1):
         name = ".".join(parts[:depth])
-        group = _group_in(group, part, below, name, fields.get(name))
+        of_list = fields.get(".".join(parts[: depth - 1]))
+        entry = of_list is not None and "choice_list" in of_list.metadata
+        group = _group_in(group, part, below, name, fields.get(name), entry)
     if isinstance(group, list):
         group[_index(group, parts[-1], field)] = copy.deepcopy(value)
     else:
         group[parts[-1]] = copy.deepcopy(value)
 
 
-def _group_in(group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None) -> Any:
-    """The mapping or list at `part` of a group, made where there is none; `below` is the part of the name after it."""
+def _group_in(
+    group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None, of_choices: bool
+) -> Any:
+    """The mapping or list at `part` of a group, made where there is none; `below` is the part of the name after it.
+
+    `of_choices` tells that the group is a list of choices.
+    """
     key: Any = _index(group, part, name) if isinstance(group, list) else part
     found = group[key] if isinstance(group, list) else group.get(key)
-    chosen = field is not None and "choices" in field.metadata
+    chosen = of_choices or (field is not None and "choices" in field.metadata)
     if found is None or (chosen and found == below):
         found = _default_list(field) if below.isdecimal() else {}
     if isinstance(found, list) or (isinstance(found, dict) and not (chosen and next(iter(found), below) != below)):
@@ -149,7 +156,7 @@ def plain(parameters: Any) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     if dataclasses.is_dataclass(value):
-        entries = {}
+        entries: dict[str, Any] = {}
         for field in dataclasses.fields(value):
             entry = getattr(value, field.name)
             if "choices" in field.metadata:
@@ -306,7 +313,7 @@ def fields_of(kind: Any, path: str = "") -> Iterator[tuple[str, dataclasses.Fiel
             yield from fields_of(hints[field.name], name)
 
 
-def anchor_paths(kind: type[Any], data: Any, folder: Path) -> None:
+def anchor_paths(kind: Any, data: Any, folder: Path) -> None:
     """Let relative paths in the mapping of a dataclass of parameters count from a folder; changes `data`."""
     if not isinstance(data, dict):
         return

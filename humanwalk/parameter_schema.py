@@ -64,6 +64,9 @@ def _field(
         schema = _choice(metadata["choices"], definitions, also)
     elif "choices_by_name" in metadata:
         schema = {"type": "object", "additionalProperties": _choice(metadata["choices_by_name"], definitions, also)}
+    elif "choice_list" in metadata:
+        items = _choice(metadata["choice_list"], definitions, also)
+        schema = {"type": "array", "items": items, "maxItems": MAX_ENTRIES}
     else:
         schema = _type(hint, definitions, also)
     if "unit" in metadata:

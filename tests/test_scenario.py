@@ -24,6 +24,8 @@ from humanwalk.scenario import (
     shipped_scenarios,
 )
 from humanwalk.terrain import PIECES
+from humanwalk.terrain.slope import Flat, Slope
+from humanwalk.terrain.steps import Curb
 
 
 def refusal(text: str = "", overrides: dict[str, str] | None = None) -> str:
@@ -412,8 +414,17 @@ def test_every_valid_number_survives_dump_and_parse(data: Any) -> None:
 def test_piece_of_a_course_that_is_none_is_refused_in_one_line(pieces: str, message: str) -> None:
     with pytest.raises(ParameterError) as error:
         parse_scenario(f"terrain: {{course: {{pieces: {pieces}}}}}")
-    assert str(error.value).startswith(message)
+    assert str(error.value).startswith(f"scenario, line 1: {message}")
     assert str(error.value).isprintable()
+
+
+def test_override_reaches_into_a_piece_of_a_course() -> None:
+    text = "terrain: {course: {pieces: [flat, {slope: {length: 4}}]}}"
+    name = "terrain.course.pieces"
+    changed = parse_scenario(text, {f"{name}.0.flat.length": "3", f"{name}.1.slope.slope": "0.1", f"{name}.2": "curb"})
+    assert changed.terrain.pieces == (Flat(length=3.0), Slope(length=4.0, slope=0.1), Curb())  # type: ignore[attr-defined]
+    with pytest.raises(ParameterError, match=rf"^{name}\.0\.slope: {name}\.0 is 'flat'; allowed: fields of 'flat'"):
+        parse_scenario(text, {f"{name}.0.slope.slope": "0.1"})
 
 
 PIECE = st.one_of(
