@@ -100,7 +100,14 @@ def require_look(look: str) -> None:
 
 
 def counted_progress(unit: str, estimate_period: float = 30.0) -> Progress:
-    """A progress bar that counts, with elapsed time, and remaining time by the speed of the last `estimate_period`."""
+    """A progress bar on terminals, with elapsed time, and remaining time by the last `estimate_period` [s]."""
     columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), f"{unit},")
     times = (TimeElapsedColumn(), "elapsed,", TimeRemainingColumn(), "remaining")
-    return Progress(*columns, *times, console=console, transient=True, speed_estimate_period=estimate_period)
+    return Progress(
+        *columns,
+        *times,
+        console=console,
+        transient=True,
+        speed_estimate_period=estimate_period,
+        disable=not console.is_terminal,
+    )

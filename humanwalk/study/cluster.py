@@ -36,6 +36,8 @@ SETTINGS: dict[str, Any] = {
     "distributed.worker.memory.spill": False,
     "distributed.worker.memory.pause": False,
     "distributed.nanny.pre-spawn-environ": ONE_THREAD | {"MALLOC_TRIM_THRESHOLD_": "65536"},
+    # After this time a worker that is not back is given up, and its core idle: a busy machine starts one slowly.
+    "distributed.deploy.lost-worker-timeout": "1 day",
     "distributed.admin.log-length": 100,
 }
 """Dask's settings for studies."""
@@ -54,8 +56,8 @@ def local_client(workers: int | None = None, memory_limit: str | int = "auto") -
         workers: their number; None for one per core.
         memory_limit: of each worker [bytes]; a worker above 95 % of it is killed. Default: its share of the machine's.
     """
-    with _quiet(), ExitStack() as stack:
-        with dask.config.set(SETTINGS), _interrupts_ignored():
+    with _quiet(), dask.config.set(SETTINGS), ExitStack() as stack:
+        with _interrupts_ignored():
             cluster = stack.enter_context(
                 LocalCluster(
                     n_workers=workers or usable_cores(),

@@ -91,7 +91,13 @@ def run_jobs[J: Indexed](
                     future.add_done_callback(finished.put)
             if not waiting:
                 return
-            done = _taken(finished, POLL_PERIOD)
+            done = []
+            for future in _taken(finished, POLL_PERIOD):
+                if future.status in ("pending", "lost"):
+                    # The worker died with the result, which another one computes again.
+                    future.add_done_callback(finished.put)
+                else:
+                    done.append(future)
             rows = _rows_of(client, done)
             for future in done:
                 # The scheduler forgets a result that nobody holds.
@@ -143,7 +149,7 @@ def _taken(queue: SimpleQueue[Future[Any]], timeout: float) -> list[Future[Any]]
 
 def _rows_of(client: Client, futures: list[Future[Any]]) -> dict[str, Row]:
     """Rows by key of futures that are done."""
-    if any(future.status in ("cancelled", "lost") for future in futures):
+    if any(future.status == "cancelled" for future in futures):
         raise OSError("the connection was lost")
     good = [future for future in futures if future.status != "error"]
     rows = dict(zip((str(future.key) for future in good), client.gather(good), strict=True)) if good else {}
@@ -199,8 +205,11 @@ def run_study(
 
         try:
             run_jobs(client, function, list_jobs(study, journal), add, should_stop)
-        finally:
-            journal.finish()
+        except BaseException:
+            with suppress(ParameterError):
+                journal.finish()
+            raise
+        journal.finish()
     return read_table(folder)
 
 
