@@ -46,7 +46,10 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
     robot = ET.Element("robot", {"name": MODEL_NAME, "xmlns:drake": DRAKE_NAMESPACE})
     robot.append(ET.Comment(HEADER))
     spheres, boxes, looks = contact_spheres(skeleton), contact_boxes(skeleton), LOOKS[look](skeleton)
-    compliant = {"drake:compliant_hydroelastic": None, "drake:hydroelastic_modulus": HYDRO_MODULUS}
+    compliant: dict[str, float | None] = {
+        "drake:compliant_hydroelastic": None,
+        "drake:hydroelastic_modulus": HYDRO_MODULUS,
+    }
     for segment, inboard in skeleton.tree():
         link = ET.SubElement(robot, "link", {"name": segment.name})
         link.append(_inertial(segment))
