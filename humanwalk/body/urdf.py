@@ -57,13 +57,13 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
         for sphere in spheres:
             if sphere.body == segment.name:
                 shape = ET.Element("sphere", {"radius": number(sphere.radius)})
-                properties = {"drake:point_contact_stiffness": POINT_STIFFNESS}
-                link.append(_collision(sphere.name, sphere.center, shape, properties))
+                stiffness = {"drake:point_contact_stiffness": POINT_STIFFNESS}
+                link.append(_collision(sphere.name, sphere.center, shape, stiffness))
         for box in boxes:
             if box.body == segment.name:
                 shape = ET.Element("box", {"size": numbers(box.size)})
-                properties = {**compliant, "drake:mesh_resolution_hint": HYDRO_RESOLUTION}
-                link.append(_collision(box.name, box.center, shape, properties))
+                resolution = {"drake:mesh_resolution_hint": HYDRO_RESOLUTION}
+                link.append(_collision(box.name, box.center, shape, {**compliant, **resolution}))
         if isinstance(inboard, Joint):
             robot.append(_revolute(inboard))
             robot.append(_transmission(inboard))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from humanwalk.cli import (
+    compare_commands,
     drive_commands,
     inspection_commands,
     run_commands,
@@ -20,6 +21,7 @@ from humanwalk.quantity import ParameterError, printable
 
 __all__ = [
     "app",
+    "compare_commands",
     "drive_commands",
     "inspection_commands",
     "main",

@@ -1,0 +1,40 @@
+"""The command that compares runs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from humanwalk.cli.common import SHOW, app, console, stdout
+
+
+@app.command(
+    rich_help_panel=SHOW,
+    epilog="Examples: humanwalk compare runs/walk runs/brisk  |  humanwalk compare runs/a runs/b runs/c -o abc.html",
+)
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Folders of two to eight runs.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to write.")] = Path("comparison.html"),
+    page: Annotated[bool, typer.Option(help="Write the page.")] = True,
+) -> None:
+    """Compare runs: measures side by side, overlaid curves, and what differs between their scenarios."""
+    from rich import box
+    from rich.table import Table
+
+    from humanwalk.run.folder import Run
+    from humanwalk.view.compare import difference_rows, falls, measure_rows, names_of, write_comparison
+
+    opened = [Run.open(run) for run in runs]
+    names = names_of(opened)
+    for title, rows in (("measure", measure_rows(opened)), ("different field", difference_rows(opened))):
+        table = Table(title, *names, box=box.SIMPLE)
+        for row in rows:
+            table.add_row(*row)
+        if table.row_count:
+            stdout.print(table)
+    for line in falls(opened, names):
+        stdout.print(line, soft_wrap=True)
+    if page:
+        with console.status("drawing"):
+            write_comparison(output, opened)
+        console.print(f"{output}", soft_wrap=True)

@@ -1,0 +1,87 @@
+"""Curves of several runs in one figure."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from humanwalk.body import SIDES, Side
+from humanwalk.measures.events import events_of
+from humanwalk.measures.human_likeness import ANGLES, CYCLE, over_strides
+from humanwalk.numerics import Array
+from humanwalk.quantity import GRAVITY
+from humanwalk.run.folder import Run
+from humanwalk.view.plots.drawing import LABEL_SIZE, TICK_SIZE, curve, label, level, new_figure
+
+RUN_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#999999")
+"""Distinct in color blindness: Okabe and Ito (2008)."""
+
+JOINTS = ("hip", "knee", "ankle")
+
+Overlay = Callable[[Sequence[Run], Sequence[str]], Figure | None]
+"""Function of runs and their names that draws a figure; None if no run has data for it."""
+
+
+def gait_cycle_angles(runs: Sequence[Run], names: Sequence[str]) -> Figure | None:
+    """Hip, knee and ankle over the gait cycle, the mean of all steady strides of both legs [deg]."""
+    figure = new_figure("Hip, knee and ankle over the gait cycle, mean of both legs", 3.0, columns=3, sharex=True)
+    for axes, joint in zip(figure.axes, JOINTS, strict=True):
+        angle = ANGLES[joint]
+        level(axes, 0.0)
+        for run, name, color in _each(runs, names):
+            _mean_curve(axes, run, lambda side, run=run, angle=angle: angle.of(run.signals, side), name, color)  # type: ignore[misc]
+        axes.set_title(joint, fontsize=LABEL_SIZE, pad=3)
+        label(axes, "gait cycle [%]", f"{angle.positive} [deg]")
+    return _with_legend(figure)
+
+
+def ground_reaction(runs: Sequence[Run], names: Sequence[str]) -> Figure | None:
+    """Vertical ground reaction force over the gait cycle, the mean of all steady strides of both legs [BW]."""
+    figure = new_figure("Vertical ground reaction force over the gait cycle, mean of both legs", 3.0)
+    (axes,) = figure.axes
+    for run, name, color in _each(runs, names):
+        weight = run.scenario.subject.mass * GRAVITY
+        _mean_curve(axes, run, lambda side, run=run, w=weight: run[f"{side.lower()}_foot.force_z"] / w, name, color)  # type: ignore[misc]
+    label(axes, "gait cycle [%]", "force [body weight]")
+    return _with_legend(figure)
+
+
+def forward_velocity(runs: Sequence[Run], names: Sequence[str]) -> Figure | None:
+    """Forward velocity of the center of mass over time [m/s]."""
+    figure = new_figure("Forward velocity of the center of mass", 3.0)
+    (axes,) = figure.axes
+    for run, name, color in _each(runs, names):
+        curve(axes, run.time, run["com.velocity_x"], color=color, label=name, linewidth=0.9)
+    label(axes, "time [s]", "velocity [m/s]")
+    return _with_legend(figure)
+
+
+OVERLAYS: dict[str, Overlay] = {
+    "gait_cycle_angles": gait_cycle_angles,
+    "ground_reaction": ground_reaction,
+    "forward_velocity": forward_velocity,
+}
+"""Figures of several runs by name."""
+
+
+def _each(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Run, str, str]]:
+    return list(zip(runs, names, RUN_COLORS[: len(runs)], strict=True))
+
+
+def _mean_curve(axes: Axes, run: Run, values: Callable[[Side], Array], name: str, color: str) -> None:
+    """Draw the mean over the steady strides of both legs, if there are strides."""
+    if not run.scenario.controller.physics:
+        return
+    begin = run.scenario.controller.steady_from(run.scenario.subject)
+    strides = np.vstack([over_strides(events_of(run.signals, side, begin), values(side)) for side in SIDES])
+    if len(strides):
+        curve(axes, CYCLE, strides.mean(axis=0), color=color, label=name)
+
+
+def _with_legend(figure: Figure) -> Figure | None:
+    handles, _ = figure.axes[0].get_legend_handles_labels()
+    if not handles:
+        return None
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=TICK_SIZE)
+    return figure
