@@ -17,6 +17,7 @@ from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.view.drive import Drive, Ended, drive, wait_for_reset
 from humanwalk.view.drive_page import DrivePage
+from humanwalk.view.drive_server import served_drive
 from humanwalk.view.replay import make_meshcat
 
 NAME = "drive"
@@ -29,7 +30,7 @@ def drive_and_write(
     output: Path | None,
     *,
     browser: bool,
-    port: int | None,
+    port: int,
     record: bool,
     replay: bool,
     plots: bool,
@@ -44,7 +45,7 @@ def drive_and_write(
         output: Folder of the first run, whose name the others extend by a number; None for the next free ones under
             runs/.
         browser: Whether to open the page.
-        port: Of the page; None for the first free one from 7000 on.
+        port: Of the page; 0 for a free one.
         record: Whether runs are saved unless the page decides otherwise.
         replay, plots: Whether to write them.
         console: Where the address and summaries are printed.
@@ -57,21 +58,21 @@ def drive_and_write(
     require_drivable(loaded)
     for line in loaded.controller.untested:
         console.print(f"warning: {line}", soft_wrap=True)
-    page = DrivePage(make_meshcat(live=True, port=port))
-    url = page.meshcat.web_url()
-    console.print(f"drive at {url} (Ctrl-C saves and ends)", soft_wrap=True)
-    if browser:
-        # A text browser in this terminal does not return until it is closed.
-        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+    page = DrivePage(make_meshcat(live=True))
     runs: list[Run] = []
-    while True:
-        wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
-        ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
-        runs += [run] if run else []
-        if ended is Ended.WALK:
-            ended = wait_for_reset(page)
-        if ended is Ended.INTERRUPT:
-            return runs
+    with served_drive(page.meshcat.web_url(), lambda: page.status, port) as url:
+        console.print(f"drive at {url} (Ctrl-C saves and ends)", soft_wrap=True)
+        if browser:
+            # A text browser in this terminal does not return until it is closed.
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+        while True:
+            wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
+            ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
+            runs += [run] if run else []
+            if ended is Ended.WALK:
+                ended = wait_for_reset(page)
+            if ended is Ended.INTERRUPT:
+                return runs
 
 
 def _drive_once(

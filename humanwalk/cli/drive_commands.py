@@ -25,9 +25,7 @@ def drive(
     ] = None,
     duration: Annotated[float, typer.Option(help="Longest simulated time of a walk [s].")] = DURATION,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
-    port: Annotated[
-        int | None, typer.Option(min=1024, max=65535, help="Port of the page. Default: the first free one from 7000.")
-    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0 for a free one.")] = 0,
     record: Annotated[bool, typer.Option(help="Save the walks; the page can change it.")] = True,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = False,

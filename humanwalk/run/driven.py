@@ -121,7 +121,8 @@ class Driven:
     def measure(self) -> float:
         """Mean speed of the center of mass over ground in the last SPEED_PERIOD [m/s]; call it at every check."""
         x, y = self._output("com")[:2]
-        self._path.append((self.time, x, y))
+        if not self._path or self.time > self._path[-1][0]:
+            self._path.append((self.time, x, y))
         before, x_before, y_before = self._path[0]
         elapsed = self.time - before
         return math.hypot(x - x_before, y - y_before) / elapsed if elapsed > 0.0 else 0.0

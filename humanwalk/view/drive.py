@@ -20,7 +20,7 @@ from humanwalk.view.drive_page import DrivePage, Hand
 IDLE_PERIOD = 0.03
 """Wall-clock time between two readings of the page while time stands still [s]."""
 
-SHOW_PERIOD = 0.25
+SHOW_PERIOD = 0.1
 """Wall-clock time between two updates of the figures on the page [s]."""
 
 
@@ -155,7 +155,7 @@ class Driver:
         by_hand = outcome.end == INTERRUPTED
         # A hand ends a walk as its duration does.
         end = "completed" if by_hand else outcome.end
-        self._page.show(0.0, 0.0, f"{end} at {self.driven.time:.2f} s: reset with R")
+        self._page.show(self.driven.time, 0.0, 0.0, f"{end}; reset with R", ended=True)
         ended = Ended.WALK if not by_hand else Ended.RESET if self.reset else Ended.INTERRUPT
         return Drive(replace(outcome, scenario=self.driven.recorded(), end=end), ended, self.record)
 
@@ -185,4 +185,4 @@ class Driver:
         if time.monotonic() - self._shown_at >= SHOW_PERIOD:
             self._shown_at = time.monotonic()
             full = ", no more can be recorded" if self._full else ""
-            self._page.show(speed, self._pace.factor, f"{simulated:.2f} s: {state}{full}")
+            self._page.show(simulated, speed, self._pace.factor, f"{state}{full}")

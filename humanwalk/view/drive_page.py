@@ -1,12 +1,12 @@
 """The page that drives a walker: Meshcat's own sliders, buttons and gamepad."""
 
 import math
-import re
 from dataclasses import dataclass, field
 
 from pydrake.geometry import Meshcat
 
 from humanwalk.numerics.scalars import clip
+from humanwalk.view.drive_server import Status
 from humanwalk.walking.command import TESTED, Command
 
 
@@ -40,10 +40,6 @@ RECORD = Slider("record", 0.0, 1.0, 1.0)
 FIRST_IMPULSE = 30.0
 """The largest impulse that the walker was tested with from every side [N s]."""
 
-SPEED = Slider("speed [m/s]", 0.0, 3.0, 0.01)
-FACTOR = Slider("real time", 0.0, 2.0, 0.01)
-"""Sliders that only show."""
-
 FASTER, SLOWER, HALT = "faster (W)", "slower (S)", "stop walking (X)"
 PAUSE, STEP, RESET = "pause or go on (space)", "one frame (N)", "reset (R)"
 BUTTONS = {PAUSE: "Space", STEP: "KeyN", RESET: "KeyR"}
@@ -72,6 +68,9 @@ GAMEPAD_AXES = ((FORWARD, 1, -1.0), (SIDEWAYS, 0, -1.0), (TURN, 2, -1.0))
 """Slider, axis of the gamepad and its sign: left stick, and right stick sideways."""
 
 
+START = Status(time=0.0, speed=0.0, factor=0.0, state="starting", ended=False, steers=False)
+
+
 @dataclass(frozen=True)
 class Hand:
     """What a hand does at the page.
@@ -98,14 +97,19 @@ class Hand:
 
 @dataclass
 class DrivePage:
-    """Controls on a Meshcat page; all browsers that show it share them."""
+    """Controls on a Meshcat page; all browsers that show it share them.
+
+    Attributes:
+        meshcat: The page.
+        status: What `humanwalk.view.drive_server` shows beside them.
+    """
 
     meshcat: Meshcat
+    status: Status = field(default_factory=lambda: START)
     _clicks: dict[str, int] = field(default_factory=dict)
     _speeds: tuple[float, ...] = ()
     _sticks: tuple[float, ...] = ()
     _held: frozenset[int] = frozenset()
-    _status: str = ""
 
     def begin(self, target: Command | None, *, record: bool = True) -> None:
         """Add the controls, or reset the speeds to those that are commanded.
@@ -115,7 +119,7 @@ class DrivePage:
             record: Whether the walk is saved unless the hand decides otherwise.
         """
         if not self._clicks:
-            starts = {IMPULSE: FIRST_IMPULSE, RATE: 1.0, FOLLOW: 1.0, RECORD: float(record), SPEED: 0.0, FACTOR: 0.0}
+            starts = {IMPULSE: FIRST_IMPULSE, RATE: 1.0, FOLLOW: 1.0, RECORD: float(record)}
             for slider in (*SPEEDS, *starts) if target is not None else starts:
                 start = starts.get(slider, 0.0)
                 add = self.meshcat.AddSlider
@@ -158,17 +162,10 @@ class DrivePage:
             RESET in pressed,
         )
 
-    def show(self, speed: float, factor: float, status: str) -> None:
-        """Show the speed [m/s], the real-time factor and a line of text."""
-        self._set(SPEED, speed)
-        self._set(FACTOR, factor)
-        # Meshcat builds JavaScript of the label.
-        status = re.sub(r"[^\w .,:%()+/-]", " ", status)[:60]
-        if status != self._status:
-            if self._status:
-                self.meshcat.DeleteButton(self._status)
-            self.meshcat.AddButton(status)
-            self._status = status
+    def show(self, time: float, speed: float, factor: float, state: str, *, ended: bool = False) -> None:
+        """Show time [s], speed [m/s], real-time factor and what the walk is at or why it has ended."""
+        steers = FASTER in self._clicks
+        self.status = Status(time=time, speed=speed, factor=factor, state=state, ended=ended, steers=steers)
 
     def _pressed(self) -> list[str]:
         clicks = {name: self.meshcat.GetButtonClicks(name) for name in self._clicks}

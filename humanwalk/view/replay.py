@@ -68,18 +68,17 @@ class Recording:
     samples: str = ""
 
 
-def make_meshcat(*, live: bool = False, port: int | None = None) -> Meshcat:
+def make_meshcat(*, live: bool = False) -> Meshcat:
     """A Meshcat with light and camera set for a walker.
 
     Args:
         live: Whether it listens on this machine for browsers that watch. Without, its port is closed: any web page
             that is open in a browser could connect to it.
-        port: At which it listens; None for the first free one from 7000 on.
 
     Raises:
         ParameterError: No server can be started.
     """
-    meshcat = _quiet_meshcat() if not live else _start_meshcat(port)
+    meshcat = _quiet_meshcat() if not live else _start_meshcat()
     for path in ("/Grid", "/Axes", "/Lights/SpotLight", "/Lights/PointLightNegativeX", "/Lights/PointLightPositiveX"):
         meshcat.SetProperty(path, "visible", False)
     meshcat.SetProperty("/Background/<object>", "top_color", [0.62, 0.76, 0.90])
@@ -186,12 +185,11 @@ def _refusal(page: Path, reason: str) -> ParameterError:
     return ParameterError(f"{printable(page)}: {reason}; allowed: a page that `humanwalk walk` wrote; run it again")
 
 
-def _start_meshcat(port: int | None = None) -> Meshcat:
+def _start_meshcat() -> Meshcat:
     try:
-        return Meshcat(MeshcatParams(host="localhost", port=port, show_stats_plot=False))
+        return Meshcat(MeshcatParams(host="localhost", show_stats_plot=False))
     except RuntimeError as error:
-        reason = f"replay: Meshcat does not start: {error}; run with --no-replay"
-        raise ParameterError(reason if port is None else f"--port {port}: {error}; choose a free port") from None
+        raise ParameterError(f"replay: Meshcat does not start: {error}; run with --no-replay") from None
 
 
 def _quiet_meshcat() -> Meshcat:

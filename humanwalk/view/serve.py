@@ -2,7 +2,7 @@
 
 import threading
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -14,6 +14,7 @@ from humanwalk.run.folder import Run
 from humanwalk.view.replay import content_policy, safe_page
 
 LOCALHOST = "127.0.0.1"
+HTML = "text/html; charset=utf-8"
 
 
 def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console) -> None:
@@ -38,12 +39,25 @@ def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console) 
 
 def replay_server(page: bytes) -> ThreadingHTTPServer:
     """A server of one page at /, bound to 127.0.0.1 at a free port."""
-    return ThreadingHTTPServer((LOCALHOST, 0), partial(_OnePage, page))
+    return local_server({"/": lambda: (HTML, page)}, content_policy())
 
 
-class _OnePage(BaseHTTPRequestHandler):
-    def __init__(self, page: bytes, *args: object) -> None:
-        self._page = page
+def local_server(
+    contents: Mapping[str, Callable[[], tuple[str, bytes]]], policy: str, port: int = 0
+) -> ThreadingHTTPServer:
+    """A server bound to 127.0.0.1.
+
+    Args:
+        contents: By path, functions that return a media type and the bytes; each request calls one.
+        policy: Content-Security-Policy of all of them.
+        port: 0 for a free one.
+    """
+    return ThreadingHTTPServer((LOCALHOST, port), partial(_Handler, contents, policy))
+
+
+class _Handler(BaseHTTPRequestHandler):
+    def __init__(self, contents: Mapping[str, Callable[[], tuple[str, bytes]]], policy: str, *args: object) -> None:
+        self._contents, self._policy = contents, policy
         super().__init__(*args)  # type: ignore[arg-type]
 
     def do_GET(self) -> None:
@@ -52,20 +66,21 @@ class _OnePage(BaseHTTPRequestHandler):
         if self.headers.get("Host") not in (f"{LOCALHOST}:{port}", f"localhost:{port}"):
             self.send_error(421)
             return
-        if self.path != "/":
+        if self.path not in self._contents:
             self.send_error(404)
             return
+        media_type, content = self._contents[self.path]()
         self.send_response(200)
-        self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.send_header("Content-Length", str(len(self._page)))
-        self.send_header("Content-Security-Policy", f"{content_policy()}; frame-ancestors 'none'")
+        self.send_header("Content-Type", media_type)
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Content-Security-Policy", f"{self._policy}; frame-ancestors 'none'")
         self.send_header("Cross-Origin-Resource-Policy", "same-origin")
         self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Referrer-Policy", "no-referrer")
         # The next run may be served at the same port.
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
-        self.wfile.write(self._page)
+        self.wfile.write(content)
 
     def log_message(self, format: str, *args: object) -> None:
         """Print nothing: requests are of no interest in the terminal."""

@@ -44,7 +44,7 @@ def drive(browser: None, tmp_path: Path) -> Iterator[Any]:
     )
     try:
         assert process.stderr is not None
-        url = re.search(r"http://localhost:\d+", process.stderr.readline())
+        url = re.search(r"http://127.0.0.1:\d+/", process.stderr.readline())
         assert url is not None
         yield process, url[0], folder
     finally:
@@ -54,7 +54,7 @@ def drive(browser: None, tmp_path: Path) -> Iterator[Any]:
 
 @pytest.fixture
 def tab(drive: Any) -> Iterator[Any]:
-    """The page in a headless browser, its controls open."""
+    """The page in a headless browser."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -63,11 +63,9 @@ def tab(drive: Any) -> Iterator[Any]:
             args=["--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
             chromium_sandbox=has_sandbox(),
         )
-        # A small picture: the simulation needs the processor.
-        tab = chromium.new_page(viewport={"width": 320, "height": 160})
+        tab = chromium.new_page(viewport={"width": 400, "height": 720})
         tab.set_default_timeout(1000.0 * PATIENCE)
         tab.goto(drive[1])
-        tab.get_by_text("Open Controls").click()
         yield tab
         chromium.close()
 
@@ -85,34 +83,28 @@ def wait_until(tab: Any, condition: Callable[[], bool]) -> None:
     pytest.fail(f"not within {PATIENCE:g} s; the page shows: {tab.locator('.dg').first.inner_text()}")
 
 
-def status(tab: Any) -> str:
-    """The line of text at the end of the controls."""
-    return str(tab.locator("li.cr.function .property-name").last.inner_text())
-
-
-def time_of(tab: Any) -> float:
-    return float(re.match(r"[\d.]+", status(tab))[0])  # type: ignore[index]
+def text(tab: Any, name: str) -> str:
+    """What the panel shows: speed, factor, time or state."""
+    return str(tab.locator(f"#{name}").inner_text())
 
 
 def test_the_walker_obeys_the_page(drive: Any, tab: Any) -> None:
     process, _, folder = drive
-    wait_until(tab, lambda: status(tab).endswith("standing"))
+    wait_until(tab, lambda: text(tab, "state") == "standing")
     for key in ("ArrowUp", "ArrowUp", "ArrowUp", "ArrowLeft", "ArrowLeft", "ArrowLeft"):
         tab.keyboard.press(key)
     wait_until(tab, lambda: value(tab, "forward") == pytest.approx(0.3) and value(tab, "turn") == pytest.approx(0.3))
     tab.keyboard.press("KeyW")
     wait_until(tab, lambda: value(tab, "forward") == pytest.approx(0.4))
-    wait_until(tab, lambda: value(tab, "speed [m/s]") > 0.15)
-    pushed = time_of(tab)
-    tab.evaluate(
-        "() => [...document.querySelectorAll('.property-name')].find(e => e.innerText.startsWith('push right')).click()"
-    )
-    wait_until(tab, lambda: time_of(tab) > pushed + 1.0)
+    wait_until(tab, lambda: float(text(tab, "speed")) > 0.15)
+    pushed = float(text(tab, "time"))
+    tab.get_by_text("push right (numpad 6)").click()
+    wait_until(tab, lambda: float(text(tab, "time")) > pushed + 1.0)
     tab.keyboard.press("Space")
-    wait_until(tab, lambda: status(tab).endswith("paused"))
-    paused = status(tab)
+    wait_until(tab, lambda: text(tab, "state") == "paused")
+    paused = text(tab, "time")
     tab.wait_for_timeout(500)
-    assert status(tab) == paused
+    assert text(tab, "time") == paused
 
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=PATIENCE) == 0

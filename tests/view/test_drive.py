@@ -31,8 +31,8 @@ class ScriptedPage(DrivePage):
     def read(self) -> Hand:
         return self.script(self.lines[-1] if self.lines else "")
 
-    def show(self, speed: float, factor: float, status: str) -> None:
-        self.lines.append(status)
+    def show(self, time: float, speed: float, factor: float, state: str, *, ended: bool = False) -> None:
+        self.lines.append(f"{time:.2f} s: {state}")
 
     def set_speeds(self, target: Command) -> None:
         self.targets.append(target)
@@ -57,7 +57,7 @@ def test_a_walk_lasts_for_its_duration_and_is_shown() -> None:
     result = drive(thesis(0.05), page)
     assert (result.ended, result.outcome.end, result.record) == (Ended.WALK, "completed", True)
     assert page.lines[0].startswith("0.00 s: ")
-    assert page.lines[-1] == "completed at 0.05 s: reset with R"
+    assert page.lines[-1] == "0.05 s: completed; reset with R"
     assert page.targets == []
 
 
@@ -90,8 +90,7 @@ def test_a_fall_stays_on_the_page_with_its_reason() -> None:
     page = ScriptedPage()
     result = drive(limp, page)
     assert (result.ended, result.outcome.end) == (Ended.WALK, "fell")
-    assert page.lines[-1].startswith("fell at ")
-    assert page.lines[-1].endswith("reset with R")
+    assert page.lines[-1].endswith(" s: fell; reset with R")
 
 
 def test_sliders_follow_the_command_of_the_scenario_until_a_hand_moves_them() -> None:

@@ -1,0 +1,76 @@
+"""`humanwalk drive`: a folder for every walk that is to be saved; what cannot be driven is refused."""
+
+import os
+import signal
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from humanwalk.cli import drive as module
+from humanwalk.cli.drive import drive_and_write
+from humanwalk.quantity import ParameterError
+from humanwalk.run.reproduce import reproduce
+from humanwalk.view.drive_page import DrivePage, Hand
+
+IDLE = Hand(None, (), 30.0, 1.0, True, True, False, False, False)
+PUSH, RESET = replace(IDLE, pushes=(0.0,)), replace(IDLE, reset=True)
+UNSAVED = replace(IDLE, record=False)
+
+
+def script() -> Iterator[Hand]:
+    """A walk with a push until a reset, one that is not saved, and one until Ctrl-C."""
+    yield from [IDLE, PUSH, IDLE, RESET]
+    yield from [UNSAVED, UNSAVED, replace(RESET, record=False)]
+    yield from [IDLE, IDLE]
+    os.kill(os.getpid(), signal.SIGINT)
+    while True:
+        yield IDLE
+
+
+@pytest.fixture
+def drive(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
+    """Drives the thesis' walker, with somebody in front of the page who follows the script."""
+    hands = script()
+
+    class ScriptedPage(DrivePage):
+        watched = True
+
+        def begin(self, *arguments: Any, **options: Any) -> None:
+            pass
+
+        def read(self) -> Hand:
+            return next(hands)
+
+    monkeypatch.setattr(module, "DrivePage", ScriptedPage)
+
+    def run(scenario: str = "thesis", overrides: dict[str, str] | None = None) -> Any:
+        options: dict[str, Any] = {"browser": False, "port": 0, "record": True, "replay": False, "plots": False}
+        return drive_and_write(
+            scenario,
+            {"duration": "5", **(overrides or {})},
+            tmp_path / "driven",
+            console=Console(quiet=True),
+            **options,
+        )
+
+    return run
+
+
+def test_every_walk_that_is_recorded_becomes_a_run(drive: Any, tmp_path: Path) -> None:
+    first, last = drive()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["driven", "driven-2"]
+    assert (first.path.name, last.path.name) == ("driven", "driven-2")
+    assert [run.summary["end"] for run in (first, last)] == ["completed", "completed"]
+    assert [len(run.scenario.pushes.given) for run in (first, last)] == [1, 0]
+    assert reproduce(first).bits_agree
+
+
+def test_a_recording_without_physics_is_refused_before_anything_is_written(drive: Any, tmp_path: Path) -> None:
+    recorded = {"controller": "{recorded: {angles: walk.mot, kinematic: true}}"}
+    with pytest.raises(ParameterError, match=r"^drive: a recording without physics"):
+        drive(overrides=recorded)
+    assert list(tmp_path.iterdir()) == []
