@@ -38,6 +38,9 @@ SURVIVAL = "survived"
 
 MAX_ENDS = 12
 
+MAX_MAGNITUDE = 1e100
+"""Numbers from this on are left out: sums of their squares would overflow. No run gives one; a changed table may."""
+
 AS_IN_SCENARIO = "as in the scenario"
 """Level of a row that has no variant."""
 
@@ -107,7 +110,7 @@ class Results:
         if name == SURVIVAL:
             return np.where(self.survived, 100.0, 0.0)
         values = np.array([np.nan if value is None else value for value in self.table[name].to_pylist()], dtype=float)
-        return np.where(self.survived, values, np.nan)
+        return np.where(self.survived & (np.abs(values) < MAX_MAGNITUDE), values, np.nan)
 
     def measures(self, names: Sequence[str] = ()) -> list[str]:
         """Columns of measures by name, with or without unit; without names the usual ones that vary.

@@ -46,6 +46,12 @@ def test_measures_are_those_of_the_runs_that_survived(results: Results) -> None:
     assert results.ends == {"completed": 5, "fell": 1}
 
 
+def test_numbers_whose_squares_overflow_are_left_out(make_results: Callable[..., Results]) -> None:
+    values = iter([1e308, 1.0, -1e308, 2.0, float("inf"), 3.0])
+    made = make_results(STUDY, lambda point: {"cost_of_transport": next(values)})
+    assert made.measure("cost_of_transport") == pytest.approx([np.nan, 1.0, np.nan, 2.0, np.nan, 3.0], nan_ok=True)
+
+
 def test_without_names_the_usual_measures_that_vary_are_shown(results: Results) -> None:
     assert results.measures() == ["cost_of_transport"]
     names = ["mean_speed", "gait.cadence_1_min", "peak_torque.LeftLegTibiaMotion"]
