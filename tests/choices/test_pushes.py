@@ -38,5 +38,6 @@ def test_a_walker_without_pushes_records_none() -> None:
 
 
 def test_random_pushes_need_time_between_them() -> None:
-    with pytest.raises(ParameterError, match=r"^pushes\.random_interval: 1e-09 .* allowed: 0, or 0\.1 to 600 s"):
+    message = r"^scenario, line 1: pushes\.random_interval: 1e-09 .* allowed: 0, or 0\.1 to 600 s"
+    with pytest.raises(ParameterError, match=message):
         parse_scenario("pushes: {random_interval: 1e-9}")
