@@ -152,8 +152,10 @@ def push_random() -> str:
 
         survived, interval = _survival(rows)
         levels = levels_of(factor_array([row[PUSH_DIRECTION] for row in rows]), 8)
-        return f"{survived} survived ({interval}):\n\n" + table(
-            ["direction", "survived", "95 % interval"], [line(level) for level in levels]
+        return (
+            f"{survived} survived ({interval}):\n\n"
+            + table(["direction", "survived", "95 % interval"], [line(level) for level in levels])
+            + "\n\n![Directions and times of pushes that were survived](images/studies/push_random_survived_map.png)"
         )
 
     return study_section("push_random", section)
