@@ -20,6 +20,9 @@ WorkersOption = Annotated[
 SchedulerOption = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="A running Dask scheduler instead, like tcp://127.0.0.1:8786.")
 ]
+SlurmOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Submit SLURM jobs as workers, as the YAML file describes them.")
+]
 
 
 class RunsByDefault(TyperGroup):
@@ -40,7 +43,8 @@ app.add_typer(study_app, name="study", rich_help_panel=STUDY)
 
 @study_app.command(
     epilog="Examples: humanwalk study steps.yaml -o studies/steps  |  "
-    "humanwalk study steps.yaml -o studies/steps --scheduler tcp://127.0.0.1:8786"
+    "humanwalk study steps.yaml -o studies/steps --scheduler tcp://127.0.0.1:8786  |  "
+    "humanwalk study steps.yaml -o studies/part2 --shard 2/10 --slurm slurm.yaml"
 )
 def run(
     study: Annotated[str, typer.Argument(help="A shipped study's name, or the path of a YAML file.")],
@@ -49,33 +53,52 @@ def run(
     ],
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
+    slurm: SlurmOption = None,
+    shard: Annotated[
+        str, typer.Option(metavar="PART/PARTS", help="Simulate a part of the points, like 2/10; see: study join.")
+    ] = "1/1",
 ) -> None:
     """Run a study: simulate its points on all cores, and write a row of the table as each ends. Resumes."""
     from humanwalk.run.monitor import caught_signals
-    from humanwalk.study.execute import run_study
+    from humanwalk.study.execute import Shard, run_study
     from humanwalk.study.study import load_study
 
+    part = Shard.parse(shard)
     loaded = load_study(study)
     with console.status(f"checking {len(loaded.points)} points"):
         loaded.require_valid()
     with (
         caught_signals() as stopped,
-        workers_client(workers, scheduler) as client,
+        workers_client(workers, scheduler, slurm) as client,
         counted_progress("runs", estimate_period=3600.0) as progress,
     ):
-        task = progress.add_task(Path(study).stem, total=len(loaded.points))
+        task = progress.add_task(Path(study).stem, total=part.size(loaded))
         table = run_study(
             loaded,
             output,
             client,
             on_progress=lambda done, total, row: progress.update(task, completed=done, total=total),
             should_stop=lambda: bool(stopped),
+            shard=part,
         )
     survived = sum(bool(value) for value in table["survived"].to_pylist())
-    console.print(f"{output}: {table.num_rows} of {len(loaded.points)} runs, {survived} survived", soft_wrap=True)
-    if table.num_rows < len(loaded.points):
+    console.print(f"{output}: {table.num_rows} of {part.size(loaded)} runs, {survived} survived", soft_wrap=True)
+    if table.num_rows < part.size(loaded):
         console.print("interrupted; the same command resumes")
         raise typer.Exit(INTERRUPTED)
+
+
+@study_app.command(epilog="Example: humanwalk study join studies/part1 studies/part2 -o studies/all")
+def join(
+    parts: Annotated[list[Path], typer.Argument(help="Folders of parts of one study; see --shard.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the whole table.")],
+) -> None:
+    """Put the rows of parts of a study into one table."""
+    from humanwalk.study.table import join as join_tables
+
+    with console.status("reading"):
+        table = join_tables(parts, output)
+    console.print(f"{output}: {table.num_rows} runs", soft_wrap=True)
 
 
 @study_app.command(
@@ -108,20 +131,20 @@ def show(
 
 
 @contextmanager
-def workers_client(workers: int | None, scheduler: str | None) -> "Iterator[Client]":
+def workers_client(workers: int | None, scheduler: str | None, slurm: Path | None = None) -> "Iterator[Client]":
     """Client of the workers that the options name.
 
     Raises:
-        ParameterError: options that exclude each other, or a scheduler that does not answer.
+        ParameterError: options that exclude each other, or a cluster that cannot be used.
     """
-    from humanwalk.study.cluster import local_client, remote_client
+    from humanwalk.study.cluster import local_client, remote_client, slurm_client
 
-    if workers is not None and scheduler is not None:
-        raise ParameterError(
-            f"--workers {workers}: with --scheduler the workers are those of the scheduler; allowed: one of both; "
-            "remove one"
-        )
+    given = {"--workers": workers, "--scheduler": scheduler, "--slurm": slurm}
+    if sum(value is not None for value in given.values()) > 1:
+        named = ", ".join(name for name, value in given.items() if value is not None)
+        raise ParameterError(f"{named}: exclude each other; allowed: one of them; remove the others")
     with ExitStack() as stack:
         with console.status("starting the workers"):
-            client = stack.enter_context(remote_client(scheduler) if scheduler else local_client(workers))
+            cluster = slurm_client(slurm) if slurm else remote_client(scheduler) if scheduler else local_client(workers)
+            client = stack.enter_context(cluster)
         yield client

@@ -5,13 +5,17 @@ import os
 import signal
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from humanwalk.extras import missing_package
-from humanwalk.quantity import ParameterError, printable
+from humanwalk.parameter_file import load_as
+from humanwalk.quantity import ParameterError, printable, quantity
 
 try:
     import dask
+    from dask.utils import parse_bytes
     from distributed import Client, LocalCluster
 except ImportError:
     raise missing_package("dask", "study") from None
@@ -94,6 +98,99 @@ def remote_client(address: str) -> Iterator[Client]:
             ) from None
         with client:
             yield client
+
+
+MIN_MEMORY = 500_000_000
+"""Least memory of a SLURM job [bytes]: a worker with Drake has 300 MB."""
+
+
+@dataclass(frozen=True)
+class SlurmParameters:
+    """SLURM jobs whose processes are the workers; see dask_jobqueue.SLURMCluster."""
+
+    jobs: int = quantity(1, "", 1, 10_000)
+    """Number of jobs."""
+
+    cores: int = quantity(1, "", 1, 1024)
+    """Cores of a job, and its number of worker processes."""
+
+    memory: str = "4GB"
+    """Memory of a job; a worker has an equal share, and needs 1 GB."""
+
+    walltime: str = "01:00:00"
+    """Time limit of a job; a run that it ends is repeated by another job."""
+
+    queue: str = ""
+    """Partition; empty for the default one."""
+
+    account: str = ""
+    """Account that is charged; empty for the default one."""
+
+    interface: str = ""
+    """Network interface of scheduler and workers, like ib0; empty for the default one."""
+
+    directives: tuple[str, ...] = ()
+    """Further options of sbatch, like `--exclude=node7`."""
+
+    prologue: tuple[str, ...] = ()
+    """Lines of shell before the workers start, like `source ~/humanwalk/.venv/bin/activate`."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for an amount of memory that is none."""
+        try:
+            enough = parse_bytes(self.memory) >= MIN_MEMORY
+        except ValueError:
+            enough = False
+        if not enough:
+            raise ParameterError(
+                f"memory: {printable(self.memory, 40)} is not enough for a worker; allowed: from 500MB; write it like "
+                "4GB"
+            )
+
+
+@contextmanager
+def slurm_client(file: Path) -> Iterator[Client]:
+    """Client of workers in SLURM jobs, which are submitted here and end with the block.
+
+    The scheduler is in this process, and listens on the network: it is for a machine that the compute nodes reach.
+
+    Args:
+        file: YAML file of `SlurmParameters`.
+
+    Raises:
+        ParameterError: the file cannot be used, or SLURM refuses the jobs.
+    """
+    try:
+        from dask_jobqueue.slurm import SLURMCluster
+    except ImportError:
+        raise missing_package("dask-jobqueue", "slurm") from None
+    slurm = load_as(SlurmParameters, file)
+    environment = [f"export {name}={value}" for name, value in ONE_THREAD.items()]
+    with _quiet(), dask.config.set(SETTINGS), ExitStack() as stack:
+        try:
+            cluster = stack.enter_context(
+                SLURMCluster(
+                    queue=slurm.queue or None,
+                    account=slurm.account or None,
+                    cores=slurm.cores,
+                    processes=slurm.cores,
+                    memory=slurm.memory,
+                    walltime=slurm.walltime,
+                    interface=slurm.interface or None,
+                    job_extra_directives=list(slurm.directives),
+                    job_script_prologue=[*environment, *slurm.prologue],
+                    scheduler_options={"dashboard": False, "dashboard_address": "127.0.0.1:0"},
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+            cluster.scale(jobs=slurm.jobs)
+            client = stack.enter_context(Client(cluster, set_as_default=False))
+        except (OSError, ValueError, RuntimeError) as error:
+            raise ParameterError(
+                f"--slurm {printable(file)}: {printable(error, 500)}; allowed: options that sbatch of this machine "
+                "takes; correct the file"
+            ) from None
+        yield client
 
 
 CONNECT_TIMEOUT = 10.0

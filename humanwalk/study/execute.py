@@ -6,10 +6,12 @@ does a run that raises an exception. The number of futures that are alive at a t
 The process that holds the client decides alone which rows are written.
 """
 
+import re
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -174,6 +176,41 @@ def _lost(client: Client, error: Exception) -> ParameterError:
     )
 
 
+@dataclass(frozen=True)
+class Shard:
+    """Every `count`-th point of a study, from the `number`-th one on: a part for a machine of its own."""
+
+    number: int = 1
+    count: int = 1
+
+    @staticmethod
+    def parse(text: str) -> "Shard":
+        """The shard that text like "2/10" names.
+
+        Raises:
+            ParameterError: it names none.
+        """
+        found = re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", text)
+        if found is None or not 1 <= int(found[1]) <= int(found[2]):
+            raise ParameterError(
+                f"--shard {printable(text)}: not a part of a study; allowed: 1/10 to 10/10, or of another number; "
+                "write the part and the number of parts"
+            )
+        return Shard(int(found[1]), int(found[2]))
+
+    def has(self, index: int) -> bool:
+        """Whether a point is in the shard."""
+        return index % self.count == self.number - 1
+
+    def size(self, study: Study) -> int:
+        """Number of points of a study that are in the shard."""
+        return len(study.points[self.number - 1 :: self.count])
+
+
+WHOLE = Shard()
+"""All points."""
+
+
 def run_study(
     study: Study,
     folder: Path | str,
@@ -181,6 +218,7 @@ def run_study(
     on_progress: Callable[[int, int, Row], None] = lambda done, all_rows, row: None,
     should_stop: Callable[[], bool] = never,
     function: Callable[[Job], Row] = simulate_row,
+    shard: Shard = WHOLE,
 ) -> pa.Table:
     """Simulate the points of a study that its folder has no rows of, and return the table.
 
@@ -191,6 +229,7 @@ def run_study(
         on_progress: called with the number of finished rows, of all rows, and each new row.
         should_stop: asked several times a second; true ends the study, which can be resumed.
         function: what a worker does with a job.
+        shard: the part of the study to simulate; see `humanwalk.study.table.join`.
 
     Raises:
         ParameterError: a point or the folder cannot be used, or the scheduler is gone; finished rows are kept.
@@ -201,10 +240,10 @@ def run_study(
 
         def add(job: Job, row: Row) -> None:
             journal.append(job.index, row)
-            on_progress(len(journal.done), len(study.points), row)
+            on_progress(len(journal.done), shard.size(study), row)
 
         try:
-            run_jobs(client, function, list_jobs(study, journal), add, should_stop)
+            run_jobs(client, function, list_jobs(study, journal, shard), add, should_stop)
         except BaseException:
             with suppress(ParameterError):
                 journal.finish()
@@ -213,9 +252,9 @@ def run_study(
     return read_table(folder)
 
 
-def list_jobs(study: Study, journal: Journal) -> Iterator[Job]:
-    """Jobs of the points that have no row, in order."""
+def list_jobs(study: Study, journal: Journal, shard: Shard = WHOLE) -> Iterator[Job]:
+    """Jobs of the points of a shard that have no row, in order."""
     for index, point in enumerate(study.points):
-        if index not in journal.done:
+        if index not in journal.done and shard.has(index):
             folder = journal.folder.absolute() / RUNS / f"{index:06d}" if study.keep == "runs" else None
             yield Job(index, study.scenario_at(point), folder)

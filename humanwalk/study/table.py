@@ -10,7 +10,7 @@ One process at a time writes: it holds a lock on the folder. `humanwalk.study.jo
 """
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -159,6 +159,34 @@ def read_table(folder: Path | str) -> pa.Table:
     return journal.read(path, table_columns(study), len(study.points))
 
 
+def join(parts: Sequence[Path], folder: Path) -> pa.Table:
+    """Put the rows of parts of a study into one folder, a new one or that of the same study, and return its table.
+
+    A row that several parts have is taken from the first; run folders stay where they are.
+
+    Raises:
+        ParameterError: a part is of another study, or the folder cannot be used.
+    """
+    study = read_study(parts[0])
+    with open_journal(folder, study) as whole:
+        for part in parts:
+            if not same_study(read_study(part), study):
+                raise ParameterError(
+                    f"{printable(part)}: holds another study than {printable(parts[0])}; allowed: parts of one study; "
+                    "leave it out"
+                )
+            for row in read_table(part).to_pylist():
+                if row[ROW] not in whole.done:
+                    whole.append(row[ROW], row)
+        whole.finish()
+    return read_table(folder)
+
+
+def same_study(one: Study, other: Study) -> bool:
+    """Whether two studies have the same runs; the path of a file of points does not matter."""
+    return _with_kept_points(one) == _with_kept_points(other) and one.points == other.points
+
+
 def read_study(folder: Path | str) -> Study:
     """The study of a folder.
 
@@ -184,7 +212,7 @@ def _require_same(folder: Path, study: Study) -> None:
     kept = _with_kept_points(study)
     if (folder / STUDY).exists():
         found = read_study(folder)
-        if _with_kept_points(found) != kept or found.points != study.points:
+        if not same_study(found, study):
             raise ParameterError(
                 f"-o {printable(folder)}: holds another study; allowed: a new folder, or that of the same study, which "
                 "resumes; choose another"

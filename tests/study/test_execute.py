@@ -15,12 +15,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import Scenario
 from humanwalk.study.cluster import KILLS_ALLOWED, local_client, remote_client
-from humanwalk.study.execute import run_jobs, run_study
+from humanwalk.study.execute import Shard, run_jobs, run_study
 from humanwalk.study.row import Job, Row, run_columns
 from humanwalk.study.study import parse_study
 from humanwalk.study.table import ROW, TABLE, read_table
@@ -98,6 +100,21 @@ def test_study_writes_rows_and_run_folders(tmp_path: Path) -> None:
         assert row["peak_torque_N_m.RightLegTibiaMotion"] == run.summary["peak_torque_N_m"]["RightLegTibiaMotion"]
         assert row["versions.drake"] == run.summary["versions"]["drake"]
     assert table.column_names[1:] == list(dict.fromkeys(["seed", *run_columns()]))
+
+
+@given(count=st.integers(1, 50), points=st.integers(1, 200))
+def test_shards_have_every_point_once(count: int, points: int) -> None:
+    study = parse_study(f"factors: {{seed: {{seeds: {{count: {points}}}}}}}")
+    shards = [Shard.parse(f"{number}/{count}") for number in range(1, count + 1)]
+    assert all(sum(shard.has(index) for shard in shards) == 1 for index in range(points))
+    for shard in shards:
+        assert shard.size(study) == sum(shard.has(index) for index in range(points))
+
+
+@pytest.mark.parametrize("text", ["", "2", "0/3", "4/3", "1/0", "-1/3", "1/3/3", "1.0/3", "1/" + "9" * 5000])
+def test_text_that_is_no_shard_is_refused(text: str) -> None:
+    with pytest.raises(ParameterError, match="not a part of a study"):
+        Shard.parse(text)
 
 
 def never_called(job: Job) -> Row:

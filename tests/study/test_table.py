@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from humanwalk.quantity import ParameterError
 from humanwalk.study.study import Study, parse_study
-from humanwalk.study.table import PARQUET, POINTS, ROW, STUDY, TABLE, open_journal, read_table, table_columns
+from humanwalk.study.table import PARQUET, POINTS, ROW, STUDY, TABLE, join, open_journal, read_table, table_columns
 
 SIX = parse_study("factors: {duration: [1, 2, 3], contact: [point, {hydroelastic: {}}]}")
 ROWS: list[dict[str, Any]] = [
@@ -138,6 +138,19 @@ def test_table_that_was_changed_is_refused_in_one_line(tmp_path: Path, change: A
         with pytest.raises(ParameterError, match=match) as raised:
             use()
         assert str(raised.value).isprintable()
+
+
+def test_parts_of_a_study_are_joined(tmp_path: Path) -> None:
+    whole = tmp_path / "whole"
+    fill(whole, SIX, range(6))
+    for number, indices in enumerate(([5, 2], [0, 3, 2], [4, 1])):
+        fill(tmp_path / str(number), SIX, indices)
+    parts = [tmp_path / str(number) for number in range(3)]
+    assert join(parts[:2], tmp_path / "out")[ROW].to_pylist() == [0, 2, 3, 5]
+    assert join(parts, tmp_path / "out").equals(read_table(whole))
+    fill(tmp_path / "other", Study(), [])
+    with pytest.raises(ParameterError, match="holds another study"):
+        join([*parts, tmp_path / "other"], tmp_path / "out")
 
 
 def test_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
