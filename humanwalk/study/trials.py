@@ -100,6 +100,8 @@ class TrialTable:
 def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
     """Make the folder of a tuning or open one to resume it; within the block no other process writes into it.
 
+    After the block the lines of the table are in the order of the trials.
+
     Raises:
         ParameterError: the folder holds something else, is in use, or cannot be written.
     """
@@ -110,6 +112,7 @@ def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
         path = require_inside(folder, folder / TRIALS)
         table = journal.start(path, trial_columns(tuning), MAX_TRIALS)
         yield TrialTable(path, tuning, {row[TRIAL]: row for row in _checked(path, table)})
+        journal.sort(path)
 
 
 def _claim(folder: Path, tuning: Tuning) -> None:
