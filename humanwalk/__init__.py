@@ -69,8 +69,15 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import on first use: the command line's help should not wait for Drake."""
-    if name not in _HOMES:
-        raise AttributeError(f"module 'humanwalk' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+# Types come from the imports above; with this function every misspelled name would have type Any.
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """Import on first use: the command line's help should not wait for Drake."""
+        if name not in _HOMES:
+            raise AttributeError(f"module 'humanwalk' has no attribute {name!r}")
+        return getattr(import_module(_HOMES[name]), name)
+
+    def __dir__() -> list[str]:
+        """Names for completion in notebooks."""
+        return __all__

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from humanwalk.body.plant import Subject
 from humanwalk.choices import (
@@ -30,8 +30,9 @@ from humanwalk.choices import (
 )
 from humanwalk.choices.start import StartParameters
 from humanwalk.files import read_text
+from humanwalk.notebook import html_table
 from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, override
-from humanwalk.quantity import ParameterError, choice, did_you_mean, quantity
+from humanwalk.quantity import ParameterError, choice, did_you_mean, printable, quantity, tag_of
 from humanwalk.terrain import TERRAINS, Plane, Terrain
 from humanwalk.walking.push import PushParameters
 from humanwalk.yaml_text import read_yaml
@@ -84,7 +85,7 @@ class RecordingParameters:
     """Frames per second of the replay."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scenario:
     """Everything a run depends on."""
 
@@ -118,6 +119,32 @@ class Scenario:
     start: StartParameters = StartParameters()
     simulation: SimulationParameters = SimulationParameters()
     recording: RecordingParameters = RecordingParameters()
+
+    def __repr__(self) -> str:
+        """Description, duration and choices; `dump_scenario` has every field."""
+        return f"Scenario({', '.join(f'{name} {value}' for name, value in self._rows())})"
+
+    def _repr_html_(self) -> str:
+        return html_table("Scenario", self._rows())
+
+    def _rows(self) -> list[tuple[str, str]]:
+        choices: dict[str, Mapping[str, type[Any]]]
+        choices = {"terrain": TERRAINS, "contact": CONTACTS, "controller": CONTROLLERS, "actuation": ACTUATIONS}
+        return [
+            ("description", repr(self.description)),
+            ("duration", f"{self.duration:g} s"),
+            ("subject", f"{self.subject.mass:g} kg, {self.subject.stature:g} m"),
+            *((name, tag_of(tags, getattr(self, name))) for name, tags in choices.items()),
+        ]
+
+
+def require_scenario(value: object, function: str) -> None:
+    """Raise ParameterError unless a function was called with a Scenario."""
+    if not isinstance(value, Scenario):
+        raise ParameterError(
+            f"{function}: {printable(repr(value), 60)} is no Scenario; allowed: what load_scenario returns; "
+            f'write {function}(load_scenario("thesis"))'
+        )
 
 
 def shipped_scenarios() -> dict[str, Path]:

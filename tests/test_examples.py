@@ -101,6 +101,16 @@ def test_read_a_run_reads_what_a_script_saved(tmp_path: Path) -> None:
         humanwalk.simulate(humanwalk.load_scenario("thesis", {"duration": "0.002"})).save(run.path)
 
 
+def test_read_a_run_reads_a_fall_before_steady_walking(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    push = {"duration": "2", "pushes": "{given: [{time: 0.0, duration: 0.05, impulse: 400.0, direction: 1.57}]}"}
+    run = humanwalk.simulate(humanwalk.load_scenario("walk", push)).save(tmp_path / "run")
+    assert run.summary["mean_speed_m_s"] is None
+    example("read_a_run").main(run.path)
+    printed = capsys.readouterr().out
+    assert f"script: fell after {run.time[-1]:g} s" in printed
+    assert "commanded 1.00 m/s, walked -" in printed
+
+
 def test_everything_promised_at_the_top_is_there() -> None:
     for name in humanwalk.__all__:
         assert getattr(humanwalk, name) is not None

@@ -140,5 +140,6 @@ class BalancedController:
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         """Raise ParameterError: a plan depends on the simulated state."""
         raise ParameterError(
-            "controller: balanced has no motion to show without physics; allowed: thesis, recorded; simulate it"
+            "make_playback: balanced has no motion to show without physics; allowed: thesis, recorded; build it with "
+            "make_walker"
         )

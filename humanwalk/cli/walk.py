@@ -15,6 +15,7 @@ from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Column, Table
 
 from humanwalk.files import write_text
+from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
@@ -24,9 +25,6 @@ from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
 from humanwalk.view.replay import MAX_TITLE, make_meshcat, static_page
 from humanwalk.view.samples import encode_samples
-
-EXTERNAL_SUPPORT = "EXTERNAL SUPPORT"
-"""Shown for every run that had it, even before there is a value."""
 
 
 def walk_and_write(
@@ -209,34 +207,8 @@ def _simulate_and_write(
 
 
 def summary_table(summary: Mapping[str, Any]) -> Table:
-    """Main figures of a summary; those that a run does not have are omitted, except that it had external support."""
-    title = f"{printable(summary['scenario'])}: {summary['end']} at {summary['duration_s']:.2f} s"
-    table = Table("", Column(justify="right"), "", title=title, show_header=False)
-
-    def row(what: str, value: float | None, form: str, unit: str, per_unit: float = 1) -> None:
-        if value is not None:
-            table.add_row(what, format(per_unit * value, form), unit)
-        elif what.startswith(EXTERNAL_SUPPORT):
-            table.add_row(what, "-", unit)
-
-    commanded = summary["commanded_speed_m_s"]
-    speed = "mean speed" if commanded is None else f"mean speed (commanded {commanded:g})"
-    row(speed, summary["mean_speed_m_s"], ".3f", "m/s")
-    row("distance", summary["distance_m"], ".2f", "m")
-    row("steps", summary["steps"], "d", "")
-    for side in ("right", "left"):
-        row(f"{side} foot lift", summary["foot_lift_m"][side], ".1f", "cm", per_unit=100)
-        row(f"{side} foot lateral deviation", summary["foot_line_error_m"][side], ".2f", "cm", per_unit=100)
-    row("lateral drift", summary["lateral_drift_m"], ".2f", "cm", per_unit=100)
-    row("deviation from the path", summary["path_deviation_m"], ".2f", "cm", per_unit=100)
-    row("pelvis tracking error, rms", summary["pelvis_tracking_rms_m"], ".2f", "cm", per_unit=100)
-    if summary["external_support"]:
-        row(f"{EXTERNAL_SUPPORT} force, rms", summary["support_force_rms_N"], ".0f", "N")
-        row(f"{EXTERNAL_SUPPORT} torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m")
-    row("QP failures", summary["qp_failures"], "d", "")
-    if summary["physics"]:
-        name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)
-        row(f"peak torque, {name}", torque, ".0f", "N m")
-        row("cost of transport", summary["cost_of_transport"], ".2f", "")
-    row("real-time factor", summary["realtime_factor"], ".2f", "")
+    """Main figures of a summary; see `summary_rows`."""
+    table = Table("", Column(justify="right"), "", title=summary_title(summary), show_header=False)
+    for row in summary_rows(summary):
+        table.add_row(*row)
     return table

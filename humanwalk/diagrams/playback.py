@@ -9,7 +9,7 @@ from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 from humanwalk.body.plant import add_human
 from humanwalk.choices.world import World
 from humanwalk.diagrams.world import built
-from humanwalk.scenario import Scenario
+from humanwalk.scenario import Scenario, require_scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.playback_state import PlaybackState
 
@@ -25,6 +25,7 @@ def make_playback(scenario: Scenario) -> Diagram:
     Raises:
         ParameterError: the controller has no reference, or the body cannot follow it.
     """
+    require_scenario(scenario, "make_playback")
     builder = DiagramBuilder()
     scene_graph = builder.AddNamedSystem("scene_graph", SceneGraph())
     # The plant only places the geometry; it is not part of the diagram.

@@ -10,7 +10,8 @@ from humanwalk.choices.pushes import add_pushes
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.world import add_world, built
-from humanwalk.scenario import Scenario
+from humanwalk.quantity import ParameterError
+from humanwalk.scenario import Scenario, require_scenario
 
 
 def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
@@ -39,6 +40,12 @@ def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FRO
     Raises:
         ParameterError: the scenario's choices do not go together, or one of them cannot be simulated.
     """
+    require_scenario(scenario, "make_walker")
+    if not scenario.controller.physics:
+        raise ParameterError(
+            "make_walker: this controller has no physics; allowed: one with forces; build it with make_playback, or "
+            "set kinematic: false"
+        )
     builder = DiagramBuilder()
     world = add_world(builder, scenario, visuals, sources)
     scenario.actuation.add_to(world)
@@ -57,6 +64,7 @@ def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FRO
 
 def make_diagram(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
     """The walker of a scenario, or its playback where the controller has no physics."""
+    require_scenario(scenario, "make_diagram")
     return make_walker(scenario, visuals, sources) if scenario.controller.physics else make_playback(scenario)
 
 

@@ -24,6 +24,8 @@ from humanwalk.files import (
 )
 from humanwalk.measures.signals import TIME, column_of, unit_of
 from humanwalk.measures.summary import Summary
+from humanwalk.measures.summary_rows import summary_rows, summary_title
+from humanwalk.notebook import html_table
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, file_paths, printable, replace_file_paths
 from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance
@@ -45,11 +47,21 @@ OTHER_BYTES = 20_000_000
 """Size of a run on a disk, with a third to spare: 15 s have 3001 rows in 5.6 MB and 480 frames in 4.9 MB."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A run folder with scenario, signals and summary; each of them is read and checked on first use."""
 
     path: Path
+
+    def __repr__(self) -> str:
+        """Path, scenario, end and duration."""
+        try:
+            return f"Run({str(self.path)!r}, {summary_title(self.summary)})"
+        except ParameterError as error:
+            return f"Run({str(self.path)!r}, {error})"
+
+    def _repr_html_(self) -> str:
+        return html_table(f"{printable(self.path)}: {summary_title(self.summary)}", summary_rows(self.summary))
 
     @staticmethod
     def open(path: Path | str) -> "Run":

@@ -5,12 +5,15 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import Summary, summarize
+from humanwalk.measures.summary_rows import summary_rows, summary_title
+from humanwalk.notebook import html_table
 from humanwalk.run.folder import Run, new_run_folder, write_run
 from humanwalk.scenario import Scenario
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Outcome:
     """A simulation that has ended.
 
@@ -26,6 +29,15 @@ class Outcome:
     signals: pa.Table
     end: str
     wall_time: float
+
+    def __repr__(self) -> str:
+        """The main figures; the signals are a table of some 320 columns."""
+        rows, end = self.signals.num_rows, self.signals[TIME][-1].as_py()
+        return f"Outcome({self.end!r} at {end:.2f} s, {rows} samples of {self.signals.num_columns} signals)"
+
+    def _repr_html_(self) -> str:
+        summary = self.summary()
+        return html_table(summary_title(summary), summary_rows(summary))
 
     @property
     def survived(self) -> bool:

@@ -22,7 +22,7 @@ from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
-from humanwalk.scenario import Scenario
+from humanwalk.scenario import Scenario, require_scenario
 from humanwalk.systems.following_view import FollowingView
 
 CENIC_MAX_STEP = 0.01
@@ -125,6 +125,7 @@ def simulate(
     Raises:
         ParameterError: the scenario cannot be simulated, or failed before there was anything to record.
     """
+    require_scenario(scenario, "simulate")
     prepared = prepare(scenario, meshcat)
     prepared.simulator.set_target_realtime_rate(realtime_rate)
     monitor = Monitor(prepared.watched, scenario.terrain)

@@ -1,5 +1,6 @@
 """An infinite plane through the world's origin: level ground or a slope."""
 
+import logging
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -73,6 +74,15 @@ class Plane(Terrain):
             plant.RegisterVisualGeometry(
                 plant.world_body(), X_WS @ RigidTransform(np.array(center)), Box(*size), name, color
             )
+
+
+def _is_wanted(record: logging.LogRecord) -> bool:
+    """Whether a message of Drake is not that half-spaces do not touch deformable bodies, of which there are none."""
+    return "half spaces are not currently supported for deformable" not in record.getMessage()
+
+
+# Drake gives the warning when the user's code makes a context.
+logging.getLogger("drake").addFilter(_is_wanted)
 
 
 def _floor() -> list[_Box]:

@@ -1,11 +1,14 @@
 """A plane as a terrain: its normal is the gradient of its height, its axes are a rotation, Drake has the same plane."""
 
+import logging
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.geometry import SceneGraph
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
+from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.numerics import Array
@@ -91,3 +94,14 @@ def test_a_value_out_of_range_is_refused(field: str) -> None:
 
 def test_a_scenario_can_name_it() -> None:
     assert TERRAINS["plane"] is Plane
+
+
+def test_drake_does_not_warn_of_the_half_space(caplog: pytest.LogCaptureFixture) -> None:
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, 0.002)
+    Plane().add_to(plant, ground_properties)
+    plant.Finalize()
+    with caplog.at_level(logging.WARNING, logger="drake"):
+        builder.Build().CreateDefaultContext()
+        logging.getLogger("drake").warning("another warning")
+    assert caplog.messages == ["another warning"]

@@ -1,0 +1,87 @@
+"""What a user of the Python package sees: short texts of objects, errors that name the function, types."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import humanwalk
+from humanwalk.diagrams.walker import make_diagram
+from humanwalk.run.folder import SUMMARY
+
+ROOT = Path(__file__).parents[1]
+
+USES = """
+import humanwalk
+from humanwalk import load_scenario, simulate
+
+reveal_type(simulate(load_scenario("thesis")).survived)
+reveal_type(humanwalk.Run.open("runs/thesis")["com.x"])
+humanwalk.simulat
+"""
+
+
+@pytest.fixture(scope="module")
+def outcome() -> Any:
+    return humanwalk.simulate(humanwalk.load_scenario("thesis", {"duration": "0.02", "description": "<b>one</b>"}))
+
+
+def test_texts_of_objects_are_short_and_have_what_matters(outcome: Any, tmp_path: Path) -> None:
+    run = outcome.save(tmp_path / "run", "a walk")
+    texts = [(outcome, ["completed", "0.02 s"]), (run, ["a walk: completed"]), (outcome.scenario, ["one", "thesis"])]
+    for thing, words in texts:
+        assert len(repr(thing)) < 300
+        assert "\n" not in repr(thing)
+        assert all(word in repr(thing) for word in words)
+
+
+def test_tables_of_objects_escape_what_comes_from_files(outcome: Any, tmp_path: Path) -> None:
+    run = outcome.save(tmp_path / "run", "<script>")
+    for thing in (outcome, run, outcome.scenario):
+        table = thing._repr_html_()
+        assert table.startswith("<table>")
+        assert "<b>one" not in table
+        assert "<script" not in table
+    assert "&lt;b&gt;one" in outcome.scenario._repr_html_()
+
+
+def test_a_broken_run_still_has_a_text(outcome: Any, tmp_path: Path) -> None:
+    run = outcome.save(tmp_path / "run")
+    (run.path / SUMMARY).write_text("{")
+    assert "summary.json" in repr(humanwalk.Run(run.path))
+
+
+@pytest.mark.parametrize("function", [humanwalk.make_walker, humanwalk.make_playback, humanwalk.simulate, make_diagram])
+@pytest.mark.parametrize("argument", ["thesis", None, Path("thesis.yaml")])
+def test_a_name_in_place_of_a_scenario_produces_an_error_with_the_fix(function: Any, argument: Any) -> None:
+    name = function.__name__
+    with pytest.raises(humanwalk.ParameterError, match=rf"{name}: .* is no Scenario; .* write {name}\(load_scenario"):
+        function(argument)
+
+
+def test_builders_that_do_not_fit_the_controller_name_the_one_that_does(tmp_path: Path) -> None:
+    (tmp_path / "motion.csv").touch()
+    recorded = '{"recorded": {"angles": "%s", "kinematic": true}}' % (tmp_path / "motion.csv")
+    with pytest.raises(humanwalk.ParameterError, match=r"make_walker: .*build it with make_playback"):
+        humanwalk.make_walker(humanwalk.load_scenario("thesis", {"controller": recorded}))
+    with pytest.raises(humanwalk.ParameterError, match=r"make_playback: .*build it with make_walker"):
+        humanwalk.make_playback(humanwalk.load_scenario("stand"))
+
+
+@pytest.mark.slow
+def test_a_script_outside_the_checkout_sees_types(tmp_path: Path) -> None:
+    """Mypy reads the whole package: half a minute without its cache."""
+    (tmp_path / "script.py").write_text(USES)
+    result = subprocess.run(
+        [sys.executable, "-m", "mypy", "--cache-dir", str(ROOT / ".mypy_cache"), "script.py"],
+        cwd=tmp_path,
+        env={"MYPYPATH": str(ROOT), "PATH": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert 'Revealed type is "bool"' in result.stdout
+    assert 'Revealed type is "numpy.ndarray' in result.stdout
+    assert 'Module has no attribute "simulat"' in result.stdout
