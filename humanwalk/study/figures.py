@@ -176,7 +176,7 @@ def _ticks(axes: Axes, levels: list[Level], distinct: int, columns: int) -> None
 
 def _points_of_two(results: Results, name: str, values: Array) -> Figure:
     x, y = results.factors.values()
-    figure = new_figure(results.label(name), 3.4)
+    figure = new_figure("Runs that survived" if name == SURVIVAL else results.label(name), 3.4)
     (axes,) = figure.axes
     axes.margins(0.03)
     axes.set_rasterization_zorder(2.5 if values.size > MAX_DRAWN else None)

@@ -125,10 +125,9 @@ class Results:
         for column in columns:
             if name in (column, _without_units(column)):
                 return column
-        near = difflib.get_close_matches(name, columns, n=3, cutoff=0.4)
-        raise ParameterError(
-            f"--measure {printable(name)}: no such measure; allowed: the columns of table.csv; near: {', '.join(near)}"
-        )
+        near = [column for column in columns if name in column] or difflib.get_close_matches(name, columns, cutoff=0.4)
+        hint = f"; near: {', '.join(near[:3])}" if near else ""
+        raise ParameterError(f"--measure {printable(name)}: no such measure; allowed: the columns of table.csv{hint}")
 
     def varies(self, name: str) -> bool:
         """Whether a measure differs between rows by more than rounding."""

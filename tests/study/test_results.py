@@ -63,6 +63,8 @@ def test_an_unknown_measure_is_refused_in_one_line(results: Results) -> None:
         ParameterError, match=r"--measure costs_of_transport: no such measure; .*near: cost_of_transport"
     ):
         results.measures(["costs_of_transport"])
+    with pytest.raises(ParameterError, match="near: cost_of_transport"):
+        results.measures(["cost"])
     with pytest.raises(ParameterError, match="no such measure"):
         results.measures(["host"])
 
