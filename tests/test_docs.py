@@ -3,7 +3,7 @@
 import dataclasses
 import re
 import runpy
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +11,27 @@ import pytest
 
 from humanwalk.choices import CONTROLLERS, BalancedController, PdActuation
 from humanwalk.diagrams.walker import make_diagram
+from humanwalk.parameter_file import build
 from humanwalk.quantity import tag_of
 from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
+from humanwalk.study.cluster import SlurmParameters
+from humanwalk.study.study import parse_study
 from humanwalk.study.tuning import parse_tuning
+from humanwalk.yaml_text import read_yaml
 
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO = sorted((DOCS / "howto").glob("*.md"))
 
 MOVING_PICTURE_LIMIT = 1_500_000
 """Bytes of the picture on README's first screen."""
+
+
+PARSERS: dict[str, Callable[[str], object]] = {
+    "parameters": parse_tuning,
+    "factors": parse_study,
+    "walltime": lambda text: build(SlurmParameters, read_yaml(text, "slurm.yaml")),
+}
+"""What reads a file of the book, by a field that only files of its kind have; else it is a scenario."""
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -35,7 +47,7 @@ def test_the_python_of_a_how_to_runs(page: Any) -> None:
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
 def test_the_files_of_a_how_to_are_valid(page: Any) -> None:
     for text in blocks(page, "yaml"):
-        parse = parse_tuning if "\nparameters:" in text else parse_scenario
+        parse = next((parse for field, parse in PARSERS.items() if f"\n{field}:" in text), parse_scenario)
         parse(text)
 
 

@@ -29,7 +29,7 @@ def test_every_example_is_tested() -> None:
         "own_controller",
         "plot_joint_torques",
         "read_a_run",
-        "sweep_a_parameter",
+        "run_a_study",
     }
     assert {path.stem for path in EXAMPLES.glob("*.py")} == tested
 
@@ -38,21 +38,11 @@ def test_build_a_walker_walks() -> None:
     assert example("build_a_walker").main(0.2) > 0
 
 
-def test_sweep_simulates_each_value(monkeypatch: pytest.MonkeyPatch) -> None:
-    class SameProcess:
-        def __init__(self, *args: int | Path, **kwargs: Any) -> None: ...
-        def __enter__(self) -> Any:
-            return self
-
-        def __exit__(self, *args: int | Path) -> None: ...
-
-        map = staticmethod(map)
-
-    sweep = example("sweep_a_parameter")
-    monkeypatch.setattr(sweep, "ProcessPoolExecutor", SameProcess)
-    summaries = sweep.main((0.12, 0.18), 0.05)
-    assert [summary["scenario"] for summary in summaries] == ["step height 0.12 m", "step height 0.18 m"]
-    assert {summary["end"] for summary in summaries} == {"completed"}
+def test_study_has_a_row_for_each_value(tmp_path: Path) -> None:
+    study = example("run_a_study")
+    table = study.main(tmp_path / "study", (0.12, 0.18), 0.05, workers=1)
+    assert table[study.STEP_HEIGHT].to_pylist() == [0.12, 0.18]
+    assert table["end"].to_pylist() == ["completed", "completed"]
 
 
 def test_plot_joint_torques_draws_both_knees(tmp_path: Path) -> None:
