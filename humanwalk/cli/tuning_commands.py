@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
-from humanwalk.cli.study_commands import RunsByDefault, SchedulerOption, WorkersOption, workers_client
+from humanwalk.cli.study_commands import RunsByDefault, SchedulerOption, SlurmOption, WorkersOption, workers_client
 
 if TYPE_CHECKING:
     from humanwalk.study.row import Row
@@ -28,6 +28,7 @@ def run(
     ],
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
+    slurm: SlurmOption = None,
 ) -> None:
     """Run a tuning: simulate its trials on all cores, and write a row of the table as each ends. Resumes."""
     from humanwalk.run.monitor import caught_signals
@@ -39,7 +40,7 @@ def run(
     done: Mapping[int, Row] = {}
     with (
         caught_signals() as stopped,
-        workers_client(workers, scheduler) as client,
+        workers_client(workers, scheduler, slurm) as client,
         counted_progress("trials", estimate_period=3600.0) as progress,
     ):
         task = progress.add_task(Path(tuning).stem, total=loaded.trials)
