@@ -102,6 +102,7 @@ def _drive_once(
 
         walk = drive(scenario, page, recording, record, checkpoint, checkpoint_period, save)
     if not walk.record:
+        console.print(f"a walk of {walk.outcome.scenario.duration:.2f} s was not saved")
         return walk.ended, None
     run = Run.open(path)
     with caught_signals() as received:

@@ -9,6 +9,7 @@ from enum import Enum
 from pydrake.geometry import Meshcat
 
 from humanwalk.choices.sources import LIVE
+from humanwalk.measures.fall import report_fall
 from humanwalk.run.driven import Driven, require_drivable
 from humanwalk.run.monitor import CHECK_PERIOD, INTERRUPTED, Monitor, caught_signals
 from humanwalk.run.outcome import Outcome
@@ -22,6 +23,10 @@ IDLE_PERIOD = 0.03
 
 SHOW_PERIOD = 0.1
 """Wall-clock time between two updates of the figures on the page [s]."""
+
+
+MIN_DURATION = 2.0 * CHECK_PERIOD
+"""Walks that are no longer than this are not saved [s]: Ctrl-C before a browser has opened the page."""
 
 
 class Ended(Enum):
@@ -155,9 +160,12 @@ class Driver:
         by_hand = outcome.end == INTERRUPTED
         # A hand ends a walk as its duration does.
         end = "completed" if by_hand else outcome.end
-        self._page.show(self.driven.time, 0.0, 0.0, f"{end}; reset with R", ended=True)
+        mass = outcome.scenario.subject.mass
+        reason = report_fall(outcome.signals, mass)["description"] if end == "fell" else end
+        self._page.show(self.driven.time, 0.0, 0.0, f"{reason}; reset with R", ended=True)
         ended = Ended.WALK if not by_hand else Ended.RESET if self.reset else Ended.INTERRUPT
-        return Drive(replace(outcome, scenario=self.driven.recorded(), end=end), ended, self.record)
+        record = self.record and self.driven.time > MIN_DURATION
+        return Drive(replace(outcome, scenario=self.driven.recorded(), end=end), ended, record)
 
     def _act(self, simulated: float) -> Hand:
         hand, driven = self._page.read(), self.driven

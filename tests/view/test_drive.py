@@ -90,7 +90,9 @@ def test_a_fall_stays_on_the_page_with_its_reason() -> None:
     page = ScriptedPage()
     result = drive(limp, page)
     assert (result.ended, result.outcome.end) == (Ended.WALK, "fell")
-    assert page.lines[-1].endswith(" s: fell; reset with R")
+    assert " s: fell at " in page.lines[-1]
+    assert "likely cause" in page.lines[-1]
+    assert page.lines[-1].endswith("; reset with R")
 
 
 def test_sliders_follow_the_command_of_the_scenario_until_a_hand_moves_them() -> None:
