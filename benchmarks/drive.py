@@ -27,6 +27,7 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 from humanwalk.view.browser import find_browser, has_sandbox
 from humanwalk.view.drive_page import FORWARD, SIDEWAYS, START, TURN
+from humanwalk.walking.command import CommandParameters
 
 DRIVE = "from humanwalk.cli.main import main; main()"
 JUMPS = (0.3, 2.0)
@@ -92,7 +93,7 @@ def print_push(run: Run) -> None:
         print(f"a push read at {push.time - 0.01:.2f} s acts at {acts:.2f} s")
 
 
-def abrupt(seeds: int, duration: float) -> None:
+def abrupt(seeds: int, duration: float, rates: float) -> None:
     falls = 0
     for seed in range(seeds):
         draw = random.Random(seed)
@@ -100,10 +101,16 @@ def abrupt(seeds: int, duration: float) -> None:
         while now < duration - 1.0:
             forward = draw.choice((FORWARD.low, 0.0, 0.7, FORWARD.high))
             sideways, turn = draw.choice((SIDEWAYS.low, 0.0, SIDEWAYS.high)), draw.choice((TURN.low, 0.0, TURN.high))
-            points.append(f"{{time: {now:.3f}, forward: {forward}, sideways: {sideways}, turn: {turn}}}")
+            points.append(f"{{time: {now:g}, forward: {forward}, sideways: {sideways}, turn: {turn}}}")
             now += draw.uniform(*JUMPS)
-        commands = {"controller.balanced.command.points": f"[{', '.join(points)}]", "duration": repr(duration)}
-        outcome = simulate(load_scenario("stand", commands))
+        command, default = "controller.balanced.command", CommandParameters()
+        changes = {
+            f"{command}.points": f"[{', '.join(points)}]",
+            f"{command}.acceleration": repr(rates * default.acceleration),
+            f"{command}.turn_acceleration": repr(rates * default.turn_acceleration),
+            "duration": repr(duration),
+        }
+        outcome = simulate(load_scenario("stand", changes))
         falls += not outcome.survived
         print(f"seed {seed}: {outcome.end} at {outcome.signals[TIME][-1].as_py():.2f} s", flush=True)
     print(f"{seeds - falls} of {seeds} stay up for {duration:g} s")
@@ -118,11 +125,12 @@ def main() -> None:
     jumps = kinds.add_parser("abrupt")
     jumps.add_argument("--seeds", type=int, default=8)
     jumps.add_argument("--duration", type=float, default=15.0, help="of each walk [s]")
+    jumps.add_argument("--rates", type=float, default=1.0, help="factor of the rates at which commands change")
     options = parser.parse_args()
     if options.kind == "real_time":
         real_time(options.duration, options.external)
     else:
-        abrupt(options.seeds, options.duration)
+        abrupt(options.seeds, options.duration, options.rates)
 
 
 if __name__ == "__main__":
