@@ -1,19 +1,20 @@
-"""Faces as solids for contact, and as pictures: what is below a face, with vertical walls, down to a common bottom.
+"""Faces as boxes for contact, and as pictures: what is below a face, with vertical walls, down to a common bottom.
 
-Solids of neighboring faces touch along their whole walls, so that nothing catches between them.
+Boxes of neighboring faces meet in a line, so that nothing catches between them.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from pydrake.common import MemoryFile
-from pydrake.geometry import Box, Convex, InMemoryMesh, Mesh, Shape
-from pydrake.math import RigidTransform
+from pydrake.geometry import Box, InMemoryMesh, Mesh
+from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.numerics import Array
-from humanwalk.terrain.face import Color, Face
+from humanwalk.terrain.face import ENDLESS, Color, Face
+from humanwalk.terrain.piece import intervals
 from humanwalk.terrain.terrain import GroundProperties
 
 TILE = 1.0
@@ -34,12 +35,21 @@ BEHIND, AHEAD = 6.0, 54.0
 BESIDE = 10.0
 """Width of the drawn ground on each side of the strip [m]."""
 
+SLAB = 0.05
+"""Thickness of the boxes below tilted faces [m]: on a rise of 10 degrees the lower edge of the far end is 9 mm ahead."""
+
+SKEW = 0.01
+"""Greatest distance by which a box below a tilted face protrudes at its sides [m]."""
+
+MIN_SLAB = 0.05
+"""Shortest of these boxes [m], in case of slopes both ways as steep as a roof."""
+
 PRISM = np.array(((4, 5, 6, 7), (3, 2, 1, 0), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)))
 """Faces of a prism, counterclockwise seen from outside: corners of the bottom 0 to 3, those of the top above them."""
 
 
 def add_solids(plant: MultibodyPlant, faces: Sequence[Face], bottom: float, properties: GroundProperties) -> None:
-    """Register one solid for each face, whose friction is the face's.
+    """Register boxes below each face, whose friction is the face's.
 
     Args:
         plant: Not finalized.
@@ -48,8 +58,8 @@ def add_solids(plant: MultibodyPlant, faces: Sequence[Face], bottom: float, prop
         properties: For contact.
     """
     for i, face in enumerate(faces):
-        X_WG, shape = _solid(face, bottom)
-        plant.RegisterCollisionGeometry(plant.world_body(), X_WG, shape, f"ground_{i}", properties(face.friction))
+        for j, (X_WG, box) in enumerate(_boxes(face, bottom)):
+            plant.RegisterCollisionGeometry(plant.world_body(), X_WG, box, f"ground_{i}_{j}", properties(face.friction))
 
 
 def add_pictures(plant: MultibodyPlant, faces: Sequence[Face], beside: Sequence[Face], bottom: float) -> None:
@@ -93,13 +103,30 @@ def _clipped(face: Face, begin: float, end: float) -> Face:
     )
 
 
-def _solid(face: Face, bottom: float) -> tuple[RigidTransform, Shape]:
-    """Pose and shape of what is below a face: a box below a level one, which Drake collides fastest."""
-    if not face.is_level:
-        return RigidTransform(), Convex(_prism(face, bottom).T, "ramp")
-    (x0, y0), (x1, y1), top = face.lower, face.upper, face.intercept
-    center = np.array((x0 + x1, y0 + y1, bottom + top)) / 2.0
-    return RigidTransform(center), Box(x1 - x0, y1 - y0, top - bottom)
+def _boxes(face: Face, bottom: float) -> Iterator[tuple[RigidTransform, Box]]:
+    """Poses and shapes of the boxes below a face: down to the bottom below a level one, else slabs along its plane.
+
+    Drake measures how deep a sphere is in a box by a formula. For a convex prism it iterates, and may return the depth
+    from a distant wall. The ends of every box are lines of constant x. Where a face goes up both ways, the sides of a
+    box turn away from lines of constant y: the face is cut along x until its boxes protrude by no more than `SKEW`.
+    """
+    if face.is_level:
+        (x0, y0), (x1, y1), top = face.lower, face.upper, face.intercept
+        center = np.array((x0 + x1, y0 + y1, bottom + top)) / 2.0
+        yield RigidTransform(center), Box(x1 - x0, y1 - y0, top - bottom)
+        return
+    normal = face.R_SW[2]
+    across = np.array((0.0, 1.0, face.gradient[1])) / np.hypot(1.0, face.gradient[1])
+    along = np.cross(across, normal)
+    turn = abs(along[1] / along[0])
+    size = max(SKEW / turn if turn > 0.0 else ENDLESS, MIN_SLAB)
+    for x0, x1 in intervals(face.upper[0] - face.lower[0], size, face.lower[0]):
+        y0, y1 = face.lower[1], face.upper[1]
+        middle = np.array((0.5 * (x0 + x1), 0.5 * (y0 + y1)))
+        center = np.array((*middle, float(face.height(middle)))) - 0.5 * SLAB * normal
+        size_y = (y1 - y0 + turn * (x1 - x0)) / across[1]
+        X_WG = RigidTransform(RotationMatrix(np.column_stack((along, across, normal))), center)
+        yield X_WG, Box((x1 - x0) / along[0], size_y, SLAB)
 
 
 def _prism(face: Face, bottom: float) -> Array:

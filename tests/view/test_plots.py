@@ -18,9 +18,12 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.terrain import Course
+from humanwalk.terrain.steps import Stairs
 from humanwalk.view.plots import PLOTS, write_gait_figures, write_plots
-from humanwalk.view.plots.drawing import SIDE
+from humanwalk.view.plots.drawing import SIDE, new_figure
 from humanwalk.view.plots.gait_figures import GAIT_FIGURES
+from humanwalk.view.plots.ground import draw_faces
 
 PERIOD = 0.01
 STRIDE = 0.6
@@ -201,6 +204,21 @@ def test_the_center_of_pressure_is_drawn_only_while_the_foot_is_loaded(make_run:
     drawn = np.isin(run.signals["right_foot.cop_x_m"].to_numpy(), dots.get_xdata())
     assert drawn.any()
     assert run.signals["right_foot.force_z_N"].to_numpy()[drawn].min() > 0.0
+
+
+def test_the_view_from_above_shows_the_faces_in_view_behind_everything() -> None:
+    """A view 0.4 m wide from the level ground before over the first of two treads, and the strip's edge."""
+    course = Course((Stairs(tread=0.3, number=2),), width=2.0)
+    figure = new_figure("", height=2.0)
+    (axes,) = figure.axes
+    axes.set(xlim=(0.8, 1.2), ylim=(0.5, 1.5))
+    draw_faces(axes, course.faces)
+    corners = [patch.get_extents().transformed(axes.transData.inverted()).extents for patch in axes.patches]
+    np.testing.assert_allclose(corners, [(0.8, 0.5, 1.0, 1.0), (1.0, 0.5, 1.2, 1.0)])
+    assert [patch.get_zorder() for patch in axes.patches] == [0, 0]
+    assert (axes.get_xlim(), axes.get_ylim()) == ((0.8, 1.2), (0.5, 1.5))
+    level, tread = (patch.get_facecolor()[:3] for patch in axes.patches)
+    assert level != tread
 
 
 def test_leg_torques_run_from_one_touchdown_to_the_next(make_run: Callable[..., Any]) -> None:

@@ -83,7 +83,7 @@ def center_of_pressure(run: Run) -> Figure | None:
     dot = partial(Line2D, [], [], marker="o", markersize=4, linestyle="")
     dots = [dot(color=SIDE[side], label=f"center of pressure, {side.lower()}") for side in SIDES]
     axes.margins(x=0.02)
-    _ground(axes, run.scenario.terrain.faces)
+    draw_faces(axes, run.scenario.terrain.faces)
     true_proportions(figure)
     label(axes, "forward x [m]", "left y [m]")
     legend(axes, [line, *dots])
@@ -118,7 +118,7 @@ def _last(run: Run, seconds: float) -> tuple[Array, Mask]:
     return run.time[rows], rows
 
 
-def _ground(axes: Axes, faces: Sequence[Face]) -> None:
+def draw_faces(axes: Axes, faces: Sequence[Face]) -> None:
     """Draw the faces of the ground in view behind everything else."""
     (left, right), (low, high) = view = axes.get_xlim(), axes.get_ylim()
     for face in faces:
