@@ -13,7 +13,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.numerics import Array
-from humanwalk.terrain.face import ENDLESS, Color, Face
+from humanwalk.terrain.face import Color, Face
 from humanwalk.terrain.piece import intervals
 from humanwalk.terrain.terrain import GroundProperties
 
@@ -36,13 +36,13 @@ BESIDE = 10.0
 """Width of the drawn ground on each side of the strip [m]."""
 
 SLAB = 0.05
-"""Thickness of the boxes below tilted faces [m]: on a rise of 10 degrees the lower edge of the far end is 9 mm ahead."""
+"""Thickness of the boxes below tilted faces [m]: on a rise of 10 degrees the far end leans 9 mm ahead."""
 
 SKEW = 0.01
 """Greatest distance by which a box below a tilted face protrudes at its sides [m]."""
 
-MIN_SLAB = 0.05
-"""Shortest of these boxes [m], in case of slopes both ways as steep as a roof."""
+MAX_SLABS = 100
+"""Largest number of boxes below one face; a long and steep one may protrude farther."""
 
 PRISM = np.array(((4, 5, 6, 7), (3, 2, 1, 0), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)))
 """Faces of a prism, counterclockwise seen from outside: corners of the bottom 0 to 3, those of the top above them."""
@@ -119,8 +119,9 @@ def _boxes(face: Face, bottom: float) -> Iterator[tuple[RigidTransform, Box]]:
     across = np.array((0.0, 1.0, face.gradient[1])) / np.hypot(1.0, face.gradient[1])
     along = np.cross(across, normal)
     turn = abs(along[1] / along[0])
-    size = max(SKEW / turn if turn > 0.0 else ENDLESS, MIN_SLAB)
-    for x0, x1 in intervals(face.upper[0] - face.lower[0], size, face.lower[0]):
+    length = face.upper[0] - face.lower[0]
+    slabs = min(1 + int(turn * length / SKEW), MAX_SLABS)
+    for x0, x1 in intervals(length, length / slabs, face.lower[0]):
         y0, y1 = face.lower[1], face.upper[1]
         middle = np.array((0.5 * (x0 + x1), 0.5 * (y0 + y1)))
         center = np.array((*middle, float(face.height(middle)))) - 0.5 * SLAB * normal
