@@ -33,7 +33,7 @@ def script() -> Iterator[Hand]:
 
 @pytest.fixture
 def drive(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
-    """Drives the thesis' walker, with somebody in front of the page who follows the script."""
+    """Drives the thesis' walker from a page whose controls follow the script."""
     hands = script()
 
     class ScriptedPage(DrivePage):

@@ -43,7 +43,7 @@ def test_a_fast_machine_keeps_the_rate(rate: float, load: float) -> None:
     assert pace.factor == pytest.approx(rate)
 
 
-def test_a_slow_machine_is_evenly_slow_and_the_factor_says_it() -> None:
+def test_a_slow_machine_is_evenly_slow_and_the_factor_shows_it() -> None:
     clock = Clock()
     pace = Pace(clock, clock.sleep)
     times = walk(pace, clock, 300, 4.0 * STEP)

@@ -40,7 +40,7 @@ def test_a_push_by_hand_adds_to_those_of_the_scenario(plant: MultibodyPlant, sou
         assert shown.tolist() == recorded.GetOutputPort("force").Eval(again).tolist()
 
 
-def test_nobody_is_pushed_in_the_past(source: LivePushSource) -> None:
+def test_a_push_in_the_past_is_refused(source: LivePushSource) -> None:
     context = source.CreateDefaultContext()
     context.SetTime(1.0)
     with pytest.raises(ValueError, match="not later than 1 s"):

@@ -18,7 +18,7 @@ IDLE = Hand(None, (), 30.0, 1.0, True, True, False, False, False)
 
 
 class ScriptedPage(DrivePage):
-    """A page in front of which somebody follows a script; without any, it is only looked at."""
+    """A page whose controls follow a script; by default nothing is pressed."""
 
     def __init__(self, script: Callable[[str], Hand] = lambda status: IDLE) -> None:
         super().__init__(make_meshcat())

@@ -168,7 +168,7 @@ def test_what_was_pressed_before_a_reset_does_not_count(page: DrivePage, browser
     assert page.meshcat.GetSliderValue(FORWARD.label) == 1.0
 
 
-def test_who_follows_no_command_has_no_sliders_of_speed() -> None:
+def test_a_walker_without_command_has_no_sliders_of_speed() -> None:
     page = DrivePage(make_meshcat())
     page.begin(None)
     assert not {FORWARD.label, SIDEWAYS.label, TURN.label} & set(page.meshcat.GetSliderNames())
