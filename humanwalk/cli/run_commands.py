@@ -8,11 +8,21 @@ from typing import Annotated
 import typer
 
 from humanwalk.cli.common import INTERRUPTED, SHOW, app, console, counted_progress, stdout
+from humanwalk.quantity import ParameterError
 
 RunArgument = Annotated[Path, typer.Argument(help="Folder of a run.")]
 ViewOption = Annotated[
     str, typer.Option(help="follow, side (from the right), front, above, or orbit (around the walker).")
 ]
+OverwriteOption = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there already.")]
+
+
+def require_new(output: Path, overwrite: bool) -> None:
+    """Raise ParameterError for a file that is there already, unless it may be replaced."""
+    if output.is_file() and not overwrite:
+        raise ParameterError(
+            f"-o {output}: is there already; allowed: a new file, or any with --overwrite; choose another name"
+        )
 
 
 @app.command(
@@ -21,11 +31,17 @@ ViewOption = Annotated[
 def replay(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN [RUN]", help="Folder of a run; two play together.")],
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the page; 0 for a free one.", show_default=False)
+    ] = 0,
 ) -> None:
-    """Serve the replay of one run, or of two together, on this machine only, and open it in the browser."""
+    """Serve the replay of one run, or of two together, on this machine only, and open it in the browser.
+
+    A run that was walked with --no-replay gets its page from its signals.
+    """
     from humanwalk.view.serve import serve_replay
 
-    serve_replay(runs, open_browser=browser, console=console)
+    serve_replay(runs, open_browser=browser, console=console, port=port)
 
 
 @app.command(
@@ -42,10 +58,12 @@ def video(
     speed: Annotated[float, typer.Option(help="Seconds of walking per second of video.")] = 1.0,
     from_: Annotated[float, typer.Option("--from", help="Begin at this time of the run [s].")] = 0.0,
     to: Annotated[float | None, typer.Option(help="End at this time of the run [s]. Default: its end.")] = None,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Render the replay of a run as a video, frame by frame, in a headless browser."""
     from humanwalk.view.video import VideoParameters, parse_size, record_video
 
+    require_new(output, overwrite)
     width, height = parse_size(size)
     parameters = VideoParameters(fps, speed, width, height, view, from_, to)  # type: ignore[arg-type]
     with _rendering() as show:
@@ -62,10 +80,12 @@ def snapshot(
     output: Annotated[Path, typer.Option("--output", "-o", help="PNG picture to write.")],
     size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Size of one frame in pixels.")] = "320x480",
     view: ViewOption = "side",
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Render selected frames side by side."""
     from humanwalk.view.video import parse_size, parse_times, write_snapshot
 
+    require_new(output, overwrite)
     width, height = parse_size(size)
     with _rendering() as show:
         write_snapshot(run, output, parse_times(times), width, height, view, show)  # type: ignore[arg-type]

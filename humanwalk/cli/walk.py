@@ -14,17 +14,16 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Column, Table
 
-from humanwalk.files import write_text
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
-from humanwalk.quantity import ParameterError, printable
-from humanwalk.run.folder import REPLAY, Run, claimed, new_run_folder, require_room
+from humanwalk.quantity import ParameterError
+from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.plots import write_plots
-from humanwalk.view.replay import MAX_TITLE, make_meshcat, static_page
-from humanwalk.view.samples import encode_samples
+from humanwalk.view.replay import make_meshcat
+from humanwalk.view.replay_file import write_replay
 
 
 def walk_and_write(
@@ -106,9 +105,7 @@ def illustrate(run: Run, replay: Any, *, plots: bool, console: Console) -> None:
     """
     with console.status("writing replay and plots"):
         if replay is not None:
-            name, description = run.summary["scenario"], run.scenario.description
-            title = printable(f"{name}: {description}, {run.summary['duration_s']:g} s", MAX_TITLE)
-            write_text(run.path / REPLAY, static_page(replay, title, encode_samples(run.signals, run.scenario.subject)))
+            write_replay(run, replay)
         if plots and run.summary["physics"]:
             write_plots(run)
     console.print(summary_table(run.summary))

@@ -142,8 +142,8 @@ class Run:
             found = page.is_file()
         if not found:
             raise ParameterError(
-                f"{printable(self.path)}: no {REPLAY}; allowed: a run that was walked with its replay; "
-                "walk again without --no-replay"
+                f"{printable(self.path)}: no {REPLAY}; allowed: a run with its replay; make it with: "
+                f"humanwalk replay {printable(self.path)}"
             )
         return page
 

@@ -9,22 +9,32 @@ from pathlib import Path
 
 from rich.console import Console
 
-from humanwalk.quantity import printable
+from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import Run
 from humanwalk.view.replay import content_policy, safe_page
+from humanwalk.view.replay_file import require_replay
 
 LOCALHOST = "127.0.0.1"
 HTML = "text/html; charset=utf-8"
 
 
-def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console) -> None:
+def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console, port: int = 0) -> None:
     """Serve a page with the replays of run folders on this machine only, until Ctrl-C; its address is printed.
 
+    A run without a replay gets one from its signals.
+
+    Args:
+        runs: Folders.
+        open_browser: Whether to open the page.
+        console: Where the address is printed.
+        port: 0 for a free one.
+
     Raises:
-        ParameterError: A folder contains no run, or a run without a replay.
+        ParameterError: A folder contains no run, or the port is in use.
     """
-    page = safe_page([Run.open(run).replay for run in runs])
-    with replay_server(page.encode()) as server:
+    with console.status("reading"):
+        page = safe_page([require_replay(Run.open(run)) for run in runs])
+    with replay_server(page.encode(), port) as server:
         url = f"http://{LOCALHOST}:{server.server_port}/"
         names = " and ".join(map(printable, runs))
         console.print(f"replay of {names} at {url} (stop with Ctrl-C)", soft_wrap=True)
@@ -37,9 +47,18 @@ def serve_replay(runs: Sequence[Path], *, open_browser: bool, console: Console) 
             console.print("stopped")
 
 
-def replay_server(page: bytes) -> ThreadingHTTPServer:
-    """A server of one page at /, bound to 127.0.0.1 at a free port."""
-    return local_server({"/": lambda: (HTML, page)}, content_policy())
+def replay_server(page: bytes, port: int = 0) -> ThreadingHTTPServer:
+    """A server of one page at /, bound to 127.0.0.1; port 0 is a free one.
+
+    Raises:
+        ParameterError: The port cannot be used.
+    """
+    try:
+        return local_server({"/": lambda: (HTML, page)}, content_policy(), port)
+    except OSError as error:
+        raise ParameterError(
+            f"--port {port}: {error.strerror}; allowed: a free port; choose another, or leave it out"
+        ) from None
 
 
 def local_server(

@@ -344,6 +344,14 @@ def test_folder_without_run_is_refused(refusal: Any, command: Any) -> None:
     assert "no run" in refusal(command, "none")
 
 
+@pytest.mark.parametrize("command", [("video",), ("snapshot", "--times", "0")])
+def test_a_picture_replaces_a_file_only_with_overwrite(refusal: Any, tmp_path: Path, command: Any) -> None:
+    (tmp_path / "mine.mp4").write_text("holidays")
+    assert "mine.mp4: is there already" in refusal(*command, "run", "-o", "mine.mp4")
+    assert "no run" in refusal(*command, "run", "-o", "mine.mp4", "--overwrite")
+    assert (tmp_path / "mine.mp4").read_text() == "holidays"
+
+
 # bench.
 
 

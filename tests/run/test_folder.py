@@ -30,7 +30,7 @@ def test_run_that_was_written_is_read_back(outcome: Outcome, tmp_path: Path) -> 
     assert run.summary["seed"] == 5
     assert {path.name for path in tmp_path.iterdir()} == {SCENARIO, SIGNALS, SUMMARY}
     assert run.plots.parent == tmp_path
-    with pytest.raises(ParameterError, match="without --no-replay"):
+    with pytest.raises(ParameterError, match="make it with: humanwalk replay"):
         _ = run.replay
     (tmp_path / "replay.html").touch()
     assert run.replay.parent == tmp_path

@@ -33,7 +33,7 @@ from humanwalk.sides import Side
 from humanwalk.terrain import Plane
 from humanwalk.view.replay import MAX_RUNS, Recording, make_meshcat, read_recording, replay_page, safe_page, static_page
 from humanwalk.view.samples import CHANNELS
-from humanwalk.view.serve import replay_server, serve_replay
+from humanwalk.view.serve import LOCALHOST, replay_server, serve_replay
 
 FRAME_RATE = 32.0
 DURATION = 0.25
@@ -264,10 +264,11 @@ def test_replay_does_not_open_the_browser_with_no_browser(run: Path, monkeypatch
     assert opened == []
 
 
-def test_run_without_replay_produces_an_error_with_the_fix(run: Path) -> None:
-    (run / REPLAY).unlink()
-    with pytest.raises(ParameterError, match=r"no replay\.html; allowed: .*; walk again without --no-replay"):
-        serve_replay([run], open_browser=False, console=Console(file=io.StringIO()))
+def test_a_port_in_use_is_refused(run: Path) -> None:
+    with socket.create_server((LOCALHOST, 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(ParameterError, match=rf"--port {port}: .*; allowed: a free port"):
+            serve_replay([run], open_browser=False, console=Console(file=io.StringIO()), port=port)
 
 
 def test_folder_without_run_produces_an_error(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def test_an_unknown_format_is_refused(run: Path) -> None:
 
 def test_a_run_without_replay_is_refused(run: Path) -> None:
     (run / REPLAY).unlink()
-    with pytest.raises(ParameterError, match=r"no replay\.html.*without --no-replay"):
+    with pytest.raises(ParameterError, match=r"no replay\.html.*humanwalk replay"):
         record_video(run, run / "walk.mp4", VideoParameters())
 
 
