@@ -58,6 +58,9 @@ JPEG_QUALITY = 0.93
 
 Format = Literal["jpeg", "png"]
 
+# Runs before the page's scripts: no frame is drawn, in the full quality of the page, until one is wanted.
+NO_FRAMES = "window.requestAnimationFrame = () => 0;"
+
 HAS_WEBGL = "() => document.createElement('canvas').getContext('webgl2') !== null"
 
 LOADED_DURATION = "() => String(typeof viewer === 'undefined' ? 0 : viewer.animator.duration)"
@@ -67,7 +70,6 @@ LOADED_DURATION = "() => String(typeof viewer === 'undefined' ? 0 : viewer.anima
 # shadow: materials are diffuse, shadows hard and only near the walker, and small objects have fewer triangles.
 HOLD = """() => {
     viewer.animate = () => {};
-    window.requestAnimationFrame = () => 0;
     viewer.set_3d_pane_size(innerWidth, innerHeight);
     viewer.renderer.domElement.remove();
     viewer.renderer.shadowMap.type = 0;
@@ -252,6 +254,7 @@ def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max
         if message.type in ("error", "warning"):
             complaints.append(f"{message.type}: {message.text}")
 
+    tab.add_init_script(NO_FRAMES)
     tab.route("**/*", answer)
     tab.on("pageerror", lambda error: complaints.append(f"error: {error}"))
     tab.on("console", log)

@@ -42,8 +42,8 @@ FRAMES = "%05d.jpeg"
 """Names of the files of frames, for Python and for ffmpeg."""
 
 MAX_BROWSERS = 4
-MIN_FRAMES_PER_BROWSER = 10
-"""Software WebGL uses little more than one core, and starting a browser takes as long as several frames."""
+MIN_FRAMES_PER_BROWSER = 20
+"""Software WebGL uses little more than one core, and starting a browser takes as long as ten frames."""
 
 STRIP_GAP = 8
 STRIP_LABEL = 30
