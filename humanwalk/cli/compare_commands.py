@@ -19,7 +19,7 @@ def compare(
 ) -> None:
     """Compare runs: measures side by side, overlaid curves, and what differs between their scenarios."""
     from rich import box
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from humanwalk.run.folder import Run
     from humanwalk.view.compare import difference_rows, falls, measure_rows, names_of, write_comparison
@@ -27,7 +27,8 @@ def compare(
     opened = [Run.open(run) for run in runs]
     names = names_of(opened)
     for title, rows in (("measure", measure_rows(opened)), ("different field", difference_rows(opened))):
-        table = Table(title, *names, box=box.SIMPLE)
+        # A field without its end would be ambiguous.
+        table = Table(Column(title, overflow="fold"), *names, box=box.SIMPLE)
         for row in rows:
             table.add_row(*row)
         if table.row_count:
