@@ -105,7 +105,7 @@ def test_everything_promised_at_the_top_is_there() -> None:
     for name in humanwalk.__all__:
         assert getattr(humanwalk, name) is not None
     with pytest.raises(AttributeError, match="no_such"):
-        _ = humanwalk.no_such
+        _ = humanwalk.no_such  # type: ignore[attr-defined]
 
 
 def test_importing_the_package_does_not_import_drake() -> None:
