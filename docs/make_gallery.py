@@ -29,8 +29,8 @@ FIGURE_DPI = 120
 STRIP_BEGIN = 6.0
 """Of the strip of one stride [s]."""
 
-LOOP_BEGIN, LOOP_FRAMES, LOOP_LENGTH = 3.0, 57, 5.0
-"""README's moving picture: six strides of the thesis' walk are 5 m, after which the grid looks the same [s, m]."""
+FIRST_PICTURE = VideoParameters(frame_rate=16.0, width=480, height=400, begin=7.0, end=11.0)
+"""README's moving picture: the walker is pushed from behind at 8 s, and walks on."""
 
 
 @dataclass(frozen=True)
@@ -104,12 +104,7 @@ def main(names: Sequence[str]) -> None:
         make_shot(name, SHOTS[name], console)
     if names:
         return
-    thesis = Run.open(RUNS / "thesis")
-    duration = LOOP_LENGTH / thesis.scenario.controller.commanded_speed
-    rate = LOOP_FRAMES / duration
-    loop = VideoParameters(rate, 1.0, 480, 400, begin=LOOP_BEGIN, end=LOOP_BEGIN + (LOOP_FRAMES - 1) / rate)
-    record_video(thesis.path, IMAGES / "walker.webp", loop)
-
+    record_video(RUNS / "push", IMAGES / "walker.webp", FIRST_PICTURE)
     write_gait_figures(IMAGES / "thesis")
     for controller, scenario in DIAGRAMS.items():
         draw_diagram(make_diagram(load_scenario(scenario)), IMAGES / f"diagram_{controller}.svg")
