@@ -122,6 +122,9 @@ def main() -> None:
     parser.add_argument("kills", type=int, nargs="?", default=200)
     parser.add_argument("--seed", type=int, default=18)
     arguments = parser.parse_args()
+    # A shell's background job ignores some signals, and would pass that on to the walks.
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        signal.signal(number, signal.SIG_DFL)
     with tempfile.TemporaryDirectory() as place, ThreadPoolExecutor(2) as pair:
         jobs = range(arguments.kills)
         results = list(pair.map(lambda index: kill(Path(place), index, arguments.seed), jobs))
