@@ -1,5 +1,6 @@
 """Dask clusters for studies: processes of this machine, a running scheduler, or SLURM jobs."""
 
+import gc
 import logging
 import os
 import signal
@@ -92,10 +93,17 @@ def remote_client(address: str) -> Iterator[Client]:
         try:
             client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
+            problem = printable(error) or type(error).__name__
+        else:
+            problem = ""
+        if problem:
+            # Dask closes a client that did not connect when it is collected, and locks up if that is while another
+            # one starts.
+            gc.collect()
             raise ParameterError(
-                f"--scheduler {printable(address)}: {printable(error)}; allowed: the address of a running Dask "
-                "scheduler, like tcp://127.0.0.1:8786; start one with: dask scheduler --host 127.0.0.1"
-            ) from None
+                f"--scheduler {printable(address)}: {problem}; allowed: the address of a running Dask scheduler, like "
+                "tcp://127.0.0.1:8786; start one with: dask scheduler --host 127.0.0.1"
+            )
         with client:
             yield client
 
