@@ -35,8 +35,6 @@ __all__ = [
 
 def main() -> None:
     """Entry point; invalid input produces one line and exit code 2."""
-    # Drake's notices (ports, half-spaces) are of no use here; its errors arrive as exceptions.
-    logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
     open_missing()
     exit_on_signals()
     with _own_log():
@@ -61,7 +59,12 @@ class _OneLine(logging.Formatter):
 
 @contextmanager
 def _own_log() -> Iterator[None]:
-    """Within the block, every message that this package logs is one line on stderr."""
+    """Within the block, every message that this package logs is one line on stderr, and Drake logs errors only.
+
+    Drake's notices (ports) are of no use here; its errors arrive as exceptions.
+    """
+    drake = logging.getLogger("drake")
+    drake.addFilter(_is_error)
     log, handler = logging.getLogger("humanwalk"), logging.StreamHandler()
     handler.setFormatter(_OneLine("humanwalk: %(message)s"))
     log.addHandler(handler)
@@ -72,3 +75,8 @@ def _own_log() -> Iterator[None]:
     finally:
         log.removeHandler(handler)
         log.propagate = True
+        drake.removeFilter(_is_error)
+
+
+def _is_error(record: logging.LogRecord) -> bool:
+    return record.levelno >= logging.ERROR

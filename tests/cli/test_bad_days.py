@@ -25,12 +25,14 @@ from humanwalk.systems import inverse_kinematics_solver, whole_body_controller
 
 THREE = {SCENARIO, SIGNALS, SUMMARY}
 WALK = "from humanwalk.cli.main import main; main()"
+HEAR = "import signal; signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+"""For tests that are started by nohup, whose children ignore SIGHUP."""
 
 
 def start(folder: Path, *more: str, before: str = "", **environment: Any) -> subprocess.Popen[str]:
     """The command line in a process of its own, walking into `folder`/run."""
     return subprocess.Popen(
-        [sys.executable, "-c", before + WALK, "walk", "--no-replay", "--no-plots", "-o", "run", *more],
+        [sys.executable, "-c", HEAR + before + WALK, "walk", "--no-replay", "--no-plots", "-o", "run", *more],
         cwd=folder,
         env=os.environ | environment,
         stderr=subprocess.PIPE,
