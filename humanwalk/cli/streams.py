@@ -1,9 +1,11 @@
 """Standard streams that fail: a full disk, a closed terminal, a reader that has stopped."""
 
+import logging
 import os
 import signal
 import sys
 from collections.abc import Callable
+from types import FrameType
 from typing import IO, Any
 
 
@@ -51,8 +53,37 @@ def open_missing() -> None:
             setattr(sys, name, os.fdopen(number, mode, closefd=False))
 
 
+NOT_INTERRUPTED = ("<frozen importlib._bootstrap>", logging.__file__)
+"""Code in which no exception may be raised: it aborts a compiled extension that is being loaded, and Drake's log, which
+calls Python's, drops it."""
+
+WAITING_PERIOD = 0.05
+"""Time between two looks at whether such code has ended [s]."""
+
+
 def exit_on_signals() -> None:
-    """Let SIGTERM and SIGHUP end the program like Ctrl-C, with its clean-up, unless they are ignored."""
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, lambda number, frame: sys.exit(128 + number))
+    """Let SIGTERM and SIGHUP end the program like Ctrl-C, with its clean-up, unless they are ignored.
+
+    All three wait for the end of imports and log messages; see `NOT_INTERRUPTED`.
+    """
+    waiting: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        if _must_wait(frame):
+            waiting.append(number)
+            signal.setitimer(signal.ITIMER_REAL, WAITING_PERIOD)
+        elif number == signal.SIGINT:
+            raise KeyboardInterrupt
+        else:
+            sys.exit(128 + number)
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, end)
+    signal.signal(signal.SIGALRM, lambda _, frame: end(waiting.pop(0), frame))
+
+
+def _must_wait(frame: FrameType | None) -> bool:
+    while frame is not None and frame.f_code.co_filename not in NOT_INTERRUPTED:
+        frame = frame.f_back
+    return frame is not None

@@ -169,6 +169,20 @@ def test_run_that_is_ended_at_a_random_time_leaves_whole_files_or_none(tmp_path:
         assert not [entry for entry in (tmp_path / "run").iterdir() if entry.name.startswith(".")]
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal_during_an_import_waits_for_its_end(tmp_path: Path, number: Any) -> None:
+    """An exception would abort a compiled extension that is being loaded."""
+    (tmp_path / "slow.py").write_text(
+        f"import os\nos.kill(os.getpid(), {int(number)})\nprint('imported', flush=True)\n"
+    )
+    code = (
+        HEAR + "from humanwalk.cli.streams import exit_on_signals; exit_on_signals(); import slow, time; time.sleep(60)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=50)
+    assert done.stdout == "imported\n"
+    assert done.returncode in (128 + number, -number)
+
+
 def test_of_two_runs_into_one_folder_one_is_refused(tmp_path: Path) -> None:
     first = start(tmp_path, "--duration", "600", "--checkpoint", "0.2")
     try:
