@@ -80,7 +80,8 @@ def exit_on_signals() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, end)
-    signal.signal(signal.SIGALRM, lambda _, frame: end(waiting.pop(0), frame))
+    # Sent again, for a simulation may have begun, which handles them itself.
+    signal.signal(signal.SIGALRM, lambda _, frame: os.kill(os.getpid(), waiting.pop(0)))
 
 
 def _must_wait(frame: FrameType | None) -> bool:
