@@ -9,10 +9,8 @@ Terrain, contact, controller and actuation are choices: the tag alone (`contact:
 of its own. Units are SI throughout: meters, seconds, radians, newtons, kilograms.
 """
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
 
@@ -32,7 +30,8 @@ from humanwalk.choices.start import StartParameters
 from humanwalk.files import read_text
 from humanwalk.notebook import html_table
 from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, override
-from humanwalk.quantity import ParameterError, choice, did_you_mean, printable, quantity, tag_of
+from humanwalk.quantity import ParameterError, choice, printable, quantity, tag_of
+from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.terrain import TERRAINS, Plane, Terrain
 from humanwalk.walking.push import PushParameters
 from humanwalk.yaml_text import read_yaml
@@ -149,8 +148,7 @@ def require_scenario(value: object, function: str) -> None:
 
 def shipped_scenarios() -> dict[str, Path]:
     """Files of the scenarios that come with humanwalk, by name."""
-    folder = Path(str(resources.files("humanwalk"))) / "models" / "scenarios"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped_files("scenarios")
 
 
 def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Scenario:
@@ -164,14 +162,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
     Raises:
         ParameterError: no such scenario, not a scenario, or a value that cannot be used; one line.
     """
-    shipped = shipped_scenarios()
-    path = shipped.get(str(name_or_path), Path(name_or_path))
-    # Path.exists raises for names that are too long.
-    if not os.path.exists(path):
-        raise ParameterError(
-            f"scenario: {name_or_path}: no such scenario or file; allowed: {', '.join(shipped)}, or the path of a YAML "
-            f"file{did_you_mean(Path(name_or_path).name, tuple(shipped))}"
-        )
+    path = named_file("scenario", name_or_path, shipped_scenarios())
     text = read_text(path, MAX_FILE_SIZE)
     return parse_scenario(text, overrides, name=path.name, folder=path.parent)
 

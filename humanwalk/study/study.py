@@ -16,14 +16,14 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.files import read_text
 from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, replace_value
-from humanwalk.quantity import ParameterError, choice, choices_by_name, did_you_mean, printable
+from humanwalk.quantity import ParameterError, choice, choices_by_name, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
+from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.study.design import DESIGNS, Design, FullFactorial, Point
 from humanwalk.study.factors import FACTORS, Factor, Values
 from humanwalk.yaml_text import read_yaml, shown
@@ -131,8 +131,7 @@ _FIELD = Values((None,))
 
 def shipped_studies() -> dict[str, Path]:
     """Files of the studies that come with humanwalk, by name."""
-    folder = Path(str(resources.files("humanwalk"))) / "models" / "studies"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped_files("studies")
 
 
 def load_study(name_or_path: str | Path) -> Study:
@@ -141,14 +140,7 @@ def load_study(name_or_path: str | Path) -> Study:
     Raises:
         ParameterError: no such study, not a study, or a value that cannot be used; one line.
     """
-    shipped = shipped_studies()
-    path = shipped.get(str(name_or_path), Path(name_or_path))
-    # Path.exists raises for names that are too long.
-    if not os.path.exists(path):
-        raise ParameterError(
-            f"study: {printable(name_or_path)}: no such study or file; allowed: {', '.join([*shipped, ''])}the path "
-            f"of a YAML file{did_you_mean(str(name_or_path), tuple(shipped))}"
-        )
+    path = named_file("study", name_or_path, shipped_studies())
     return parse_study(read_text(path, MAX_FILE_SIZE), path.name, path.parent)
 
 

@@ -14,17 +14,16 @@ A search starts from the values of the scenario.
 """
 
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, build, dump
+from humanwalk.parameter_file import MAX_FILE_SIZE, build, dump, located
 from humanwalk.quantity import ParameterError, did_you_mean, quantity
 from humanwalk.scenario import Scenario
+from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.study.design import Rows
 from humanwalk.study.objectives import Bound, Measured, Objective
 from humanwalk.study.row import run_columns
@@ -199,8 +198,7 @@ def _start_value(name: str, scenario: Any, limits: Range) -> float:
 
 def shipped_tunings() -> dict[str, Path]:
     """Files of the tunings that come with humanwalk, by name."""
-    folder = Path(str(resources.files("humanwalk"))) / "models" / "tunings"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped_files("tunings")
 
 
 def load_tuning(name_or_path: str | Path) -> Tuning:
@@ -209,13 +207,7 @@ def load_tuning(name_or_path: str | Path) -> Tuning:
     Raises:
         ParameterError: no such tuning, not a tuning, or a value that cannot be used; one line.
     """
-    shipped = shipped_tunings()
-    path = shipped.get(str(name_or_path), Path(name_or_path))
-    if not os.path.exists(path):
-        raise ParameterError(
-            f"tuning: {name_or_path}: no such tuning or file; allowed: {', '.join(shipped)}, or the path of a YAML "
-            f"file{did_you_mean(str(name_or_path), tuple(shipped))}"
-        )
+    path = named_file("tuning", name_or_path, shipped_tunings())
     return parse_tuning(read_text(path, MAX_FILE_SIZE), path.name, path.parent)
 
 
@@ -224,8 +216,9 @@ def parse_tuning(text: str, name: str = "tuning", folder: Path = Path()) -> Tuni
     data = read_yaml(text, name)
     if isinstance(data.get("runs"), dict):
         data["runs"] = complete(data["runs"], folder)
-    tuning = build(Tuning, data)
-    start_values(tuning)
+    with located(text, name):
+        tuning = build(Tuning, data)
+        start_values(tuning)
     return tuning
 
 
