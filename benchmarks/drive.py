@@ -25,7 +25,7 @@ from humanwalk.measures.signals import TIME
 from humanwalk.run.folder import Run
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
-from humanwalk.view.browser import find_browser, has_sandbox
+from humanwalk.view.browser import MESA, RENDERING, find_browser, has_sandbox
 from humanwalk.view.drive_page import FORWARD, SIDEWAYS, START, TURN
 from humanwalk.walking.command import CommandParameters
 
@@ -35,22 +35,22 @@ JUMPS = (0.3, 2.0)
 
 
 def real_time(duration: float, external: bool) -> None:
-    began = time.perf_counter()
+    from playwright.sync_api import sync_playwright
+
     with ExitStack() as stack:
+        # The browser is open when the command is given.
+        playwright = stack.enter_context(sync_playwright())
+        chromium = playwright.chromium.launch(
+            executable_path=find_browser(), args=RENDERING, env={**os.environ, **MESA}, chromium_sandbox=has_sandbox()
+        )
+        stack.callback(chromium.close)
+        began = time.perf_counter()
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) / "run"
         browser = [] if external else ["--no-browser"]
         arguments = ["drive", "walk", "-o", str(folder), "--no-replay", *browser]
         process = subprocess.Popen([sys.executable, "-c", DRIVE, *arguments], stderr=subprocess.PIPE, text=True)
         stack.callback(process.kill)
         url = re.search(r"http://127.0.0.1:\d+/", process.stderr.readline())[0]
-        from playwright.sync_api import sync_playwright
-
-        playwright = stack.enter_context(sync_playwright())
-        flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        chromium = playwright.chromium.launch(
-            executable_path=find_browser(), args=flags, chromium_sandbox=has_sandbox()
-        )
-        stack.callback(chromium.close)
         size = (64, 48) if external else (640, 360)
         tab = chromium.new_page(viewport=dict(zip(("width", "height"), size, strict=True)))
         tab.goto(url)
@@ -68,7 +68,8 @@ def real_time(duration: float, external: bool) -> None:
             samples.append((time.perf_counter(), simulated()))
             if len(samples) == 20:
                 tab.keyboard.press("Numpad8")
-        process.send_signal(signal.SIGINT)
+        # A shell's background job ignores Ctrl-C, and passes that on.
+        process.send_signal(signal.SIGTERM)
         process.communicate()
         print_factors(samples)
         print_push(Run.open(folder))

@@ -16,7 +16,7 @@ from humanwalk.cli import (
     tuning_commands,
 )
 from humanwalk.cli.common import BAD_INPUT, MAX_MESSAGE, app, console
-from humanwalk.cli.streams import discard, exit_on_signals, open_missing
+from humanwalk.cli.streams import discard, open_missing, signals_as_exits
 from humanwalk.quantity import ParameterError, printable
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "drive_commands",
     "inspection_commands",
     "main",
+    "run_command",
     "run_commands",
     "schema_commands",
     "simulation_commands",
@@ -34,9 +35,14 @@ __all__ = [
 
 
 def main() -> None:
-    """Entry point; invalid input produces one line and exit code 2."""
+    """Entry point of the program."""
     open_missing()
-    exit_on_signals()
+    with signals_as_exits():
+        run_command()
+
+
+def run_command() -> None:
+    """Run the command in `sys.argv`; invalid input produces one line and exit code 2."""
     with _own_log():
         try:
             try:

@@ -4,7 +4,8 @@ import logging
 import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import IO, Any
 
@@ -61,10 +62,12 @@ WAITING_PERIOD = 0.05
 """Time between two looks at whether such code has ended [s]."""
 
 
-def exit_on_signals() -> None:
-    """Let SIGTERM and SIGHUP end the program like Ctrl-C, with its clean-up, unless they are ignored.
+@contextmanager
+def signals_as_exits() -> Iterator[None]:
+    """Within the block, which is the program, SIGTERM and SIGHUP end it like Ctrl-C, unless they are ignored.
 
-    All three wait for the end of imports and log messages; see `NOT_INTERRUPTED`.
+    All three wait for the end of imports and log messages; see `NOT_INTERRUPTED`. After the block all is written: a
+    signal ends the process at once, since Python prints tracebacks of exceptions that are raised while it shuts down.
     """
     waiting: list[int] = []
 
@@ -77,11 +80,17 @@ def exit_on_signals() -> None:
         else:
             sys.exit(128 + number)
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, end)
+    unset = (signal.SIG_DFL, signal.default_int_handler)
+    numbers = [n for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if signal.getsignal(n) in unset]
+    for number in numbers:
+        signal.signal(number, end)
     # Sent again, for a simulation may have begun, which handles them itself.
     signal.signal(signal.SIGALRM, lambda _, frame: os.kill(os.getpid(), waiting.pop(0)))
+    try:
+        yield
+    finally:
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _must_wait(frame: FrameType | None) -> bool:

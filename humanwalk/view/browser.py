@@ -11,6 +11,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -30,10 +31,15 @@ MACOS_BROWSERS = (
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
 )
 
+RENDERING = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader")
+"""Flags for WebGL on the processor, the same picture on every machine: Mesa's, else SwiftShader's, which takes twice as
+long."""
+
+MESA = {"EGL_PLATFORM": "surfaceless", "LIBGL_ALWAYS_SOFTWARE": "1"}
+"""Environment variables for Mesa to render on the processor, without a display."""
+
 FLAGS = (
-    # Renders on the processor: the same picture on every machine, and no other flags give WebGL without a display.
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
+    *RENDERING,
     # No network: neither names nor addresses resolve, and all else goes to a proxy that does not exist.
     "--host-resolver-rules=MAP * ~NOTFOUND",
     "--proxy-server=http://127.0.0.1:9",
@@ -66,42 +72,17 @@ HAS_WEBGL = "() => document.createElement('canvas').getContext('webgl2') !== nul
 LOADED_DURATION = "() => String(typeof viewer === 'undefined' ? 0 : viewer.animator.duration)"
 
 # Meshcat's own loop stops: nothing moves or is drawn except when a still is taken, and the canvas is removed from the
-# page, which would be composited once more around it. Software WebGL pays for every triangle, highlight and soft
-# shadow: materials are diffuse, shadows hard and only near the walker, and small objects have fewer triangles.
-HOLD = """() => {
+# page, which would be composited once more around it.
+HOLD = (
+    """() => {"""
+    + files("humanwalk.view").joinpath("software_rendering.js").read_text(encoding="utf-8")
+    + """
     viewer.animate = () => {};
     viewer.set_3d_pane_size(innerWidth, innerHeight);
     viewer.renderer.domElement.remove();
-    viewer.renderer.shadowMap.type = 0;
     const floor = viewer.scene.getObjectByName("endless floor");
     if (floor) Object.assign(floor.material.map, {anisotropy: 1, needsUpdate: true});
-    const round = [8, 12, 16].map(n => new THREE.SphereGeometry(1, n, Math.round(0.75 * n)));
-    const pixelsPerMeter = innerHeight / 2.4;
-    viewer.scene.updateMatrixWorld(true);
-    viewer.scene.traverse(object => {
-        if (object.isMesh && !object.material.isMeshLambertMaterial) {
-            const {color, map, transparent, opacity, side, depthTest} = object.material;
-            object.material = new THREE.MeshLambertMaterial({color, map, transparent, opacity, side, depthTest});
-        }
-        if (object.isMesh && object.castShadow) {
-            object.geometry.computeBoundingSphere();
-            const radius = object.geometry.boundingSphere.radius * object.matrixWorld.getMaxScaleOnAxis();
-            const size = radius * pixelsPerMeter;
-            object.castShadow = size > 12;
-            const coarse = size < 5 ? 0 : size < 12 ? 1 : size < 50 ? 2 : 3;
-            const {type, parameters: {radius: r, height: h} = {}} = object.geometry;
-            if (type === "SphereGeometry" && coarse < 3) object.geometry = round[coarse];
-            if (type === "CapsuleGeometry" && coarse < 3)
-                object.geometry = new THREE.CapsuleGeometry(r, h, 2 + coarse, 8 + 2 * coarse);
-        }
-        if (object.isDirectionalLight) {
-            const {shadow} = object;
-            shadow.map?.dispose();
-            shadow.map = null;
-            shadow.mapSize.set(1024, 1024);
-            Object.assign(shadow.camera, {left: -1.6, right: 1.6, bottom: -1.6, top: 1.6}).updateProjectionMatrix();
-        }
-    });
+    cheapScene.simplify(viewer, innerHeight);
     window.humanwalkShow = (time, position, target) => {
         picture.show(time);
         picture.look(position, target);
@@ -109,6 +90,7 @@ HOLD = """() => {
     };
     return true;
 }"""
+)
 
 STILL = """([time, position, target, type, quality]) => {
     humanwalkShow(time, position, target);
@@ -195,7 +177,11 @@ def open_browser() -> Iterator["Browser"]:
         try:
             # Ctrl-C is handled here, between two frames.
             browser = playwright.chromium.launch(
-                executable_path=executable, args=FLAGS, handle_sigint=False, chromium_sandbox=has_sandbox()
+                executable_path=executable,
+                args=FLAGS,
+                env={**os.environ, **MESA},
+                handle_sigint=False,
+                chromium_sandbox=has_sandbox(),
             )
         except Error as error:
             if executable is None:

@@ -43,12 +43,15 @@ class Status(TypedDict):
 def drive_html(meshcat_url: str) -> str:
     """The page: that of a Meshcat, which is served at `meshcat_url`, with our panel."""
     page = Path(FindResourceOrThrow(PAGE)).read_text(encoding="utf-8")
-    panel = files("humanwalk.view").joinpath("drive_panel.html").read_text(encoding="utf-8")
+    script, panel = (
+        files("humanwalk.view").joinpath(name).read_text(encoding="utf-8")
+        for name in ("software_rendering.js", "drive_panel.html")
+    )
     for old, new in ((ADDRESS, f'url = "{meshcat_url}/";'), (TITLE, "<title>humanwalk drive</title>")):
         assert old in page, "another Meshcat"
         page = page.replace(old, new, 1)
     before, body_end, after = page.rpartition("</body>")
-    return f"{before}{panel}{body_end}{after}"
+    return f"{before}<script>{script}</script>{panel}{body_end}{after}"
 
 
 def drive_policy(meshcat_url: str) -> str:

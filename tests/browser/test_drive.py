@@ -15,7 +15,7 @@ import pytest
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.run.folder import Run
 from humanwalk.run.reproduce import reproduce
-from humanwalk.view.browser import find_browser, has_sandbox
+from humanwalk.view.browser import MESA, RENDERING, find_browser, has_sandbox
 
 pytestmark = pytest.mark.browser
 
@@ -60,7 +60,8 @@ def tab(drive: Any) -> Iterator[Any]:
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(
             executable_path=find_browser(),
-            args=["--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+            args=RENDERING,
+            env={**os.environ, **MESA},
             chromium_sandbox=has_sandbox(),
         )
         tab = chromium.new_page(viewport={"width": 400, "height": 720})

@@ -11,6 +11,7 @@ import pytest
 
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.view.browser import RENDERING
 from humanwalk.view.replay import make_meshcat, static_page
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -84,8 +85,7 @@ def probe(outcome_and_page: Any, tmp_path_factory: pytest.TempPathFactory) -> An
             CHROMIUM,  # type: ignore[list-item]
             "--headless",
             "--no-sandbox",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
+            *RENDERING,
             "--disable-background-networking",
             f"--user-data-dir={folder / 'profile'}",
             "--window-size=320,240",

@@ -175,12 +175,29 @@ def test_signal_during_an_import_waits_for_its_end(tmp_path: Path, number: Any) 
     (tmp_path / "slow.py").write_text(
         f"import os\nos.kill(os.getpid(), {int(number)})\nprint('imported', flush=True)\n"
     )
-    code = (
-        HEAR + "from humanwalk.cli.streams import exit_on_signals; exit_on_signals(); import slow, time; time.sleep(60)"
-    )
+    code = f"""{HEAR}
+from humanwalk.cli.streams import signals_as_exits
+with signals_as_exits():
+    import slow, time
+    time.sleep(60)
+"""
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=50)
     assert done.stdout == "imported\n"
     assert done.returncode in (128 + number, -number)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal_after_the_end_prints_nothing(number: Any) -> None:
+    """Python prints the traceback of an exception that is raised while it shuts down."""
+    code = f"""{HEAR}
+import atexit, os
+from humanwalk.cli.streams import signals_as_exits
+with signals_as_exits():
+    atexit.register(lambda: os.kill(os.getpid(), {int(number)}))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=50)
+    assert done.stderr == ""
+    assert done.returncode == -number
 
 
 def test_of_two_runs_into_one_folder_one_is_refused(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from humanwalk.cli.main import main
+from humanwalk.cli.main import run_command
 from humanwalk.parameter_file import MAX_FILE_SIZE, fields_of
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
 
@@ -49,7 +49,7 @@ def walk(path: Any, folder: Any) -> Any:
     sys.stderr = io.StringIO()
     code = 0
     try:
-        main()
+        run_command()
     except SystemExit as end:
         code = end.code or 0  # type: ignore[assignment]
     finally:
@@ -175,7 +175,7 @@ def test_name_of_a_scenario_does_not_lead_out_of_runs(
     (tmp_path / "in" / name).write_text("duration: 0.002\n")
     monkeypatch.setattr(sys, "argv", ["humanwalk", "walk", "--no-replay", "--no-plots", "--", f"./{name}"])
     with pytest.raises(SystemExit) as end:
-        main()
+        run_command()
     assert not end.value.code
     assert {entry.name for entry in tmp_path.iterdir()} == {"in"}
     assert {entry.name for entry in (tmp_path / "in").iterdir()} == {name, "runs"}

@@ -19,7 +19,7 @@ from humanwalk.bench import measure
 from humanwalk.bench.result import read_result
 from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.common import INSPECT, SHOW, SIMULATE
-from humanwalk.cli.main import app, main
+from humanwalk.cli.main import app, run_command
 from humanwalk.cli.walk import program, summary_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -39,7 +39,7 @@ def humanwalk(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
         monkeypatch.setattr(sys, "argv", ["humanwalk", *map(str, arguments)])
         code = 0
         try:
-            main()
+            run_command()
         except SystemExit as end:
             code = end.code or 0  # type: ignore[assignment]
         captured = capfd.readouterr()

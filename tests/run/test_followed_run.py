@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.opensim_names import COORDINATES
-from humanwalk.cli.main import app, main
+from humanwalk.cli.main import app, run_command
 from humanwalk.motion.followed import REQUIRED_JOINTS
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.motion.recorded_motion import RecordedMotion
@@ -267,7 +267,7 @@ def test_command_tells_it_in_one_line_of_its_own(
     arguments = ["walk", "--follow", str(recording), "--kinematic", "-o", str(tmp_path / "run"), "--no-replay"]
     monkeypatch.setattr(sys, "argv", ["humanwalk", *arguments])
     with pytest.raises(SystemExit) as end:
-        main()
+        run_command()
     assert not end.value.code
     (line,) = (line for line in capfd.readouterr().err.splitlines() if "range" in line)
     assert line.startswith(f"humanwalk: {recording}: angles clipped")
