@@ -11,6 +11,7 @@ from pathlib import Path
 
 from humanwalk.quantity import ParameterError, printable
 
+READABLE = "a folder that you may read; check its permissions"
 WRITABLE = "a folder that you may write to, with room; choose another with -o"
 
 TEMPORARY_NAME = 80
@@ -68,6 +69,28 @@ def require_inside(folder: Path, path: Path) -> Path:
     if not inside:
         raise ParameterError(
             f"{printable(path)}: leads out of {printable(folder)}; allowed: files of that folder; remove the link"
+        )
+    return path
+
+
+def file_of(folder: Path, name: str, kind: str, command: str) -> Path:
+    """Path of a file that every folder of a kind has.
+
+    Args:
+        folder: given by the user.
+        name: of the file.
+        kind: what the folder holds, for the error: "run".
+        command: what writes such folders: "humanwalk walk".
+
+    Raises:
+        ParameterError: it is missing, leads out of the folder, or the folder cannot be read.
+    """
+    path = require_inside(folder, folder / name)
+    with file_errors(path, READABLE):
+        found = path.is_file()
+    if not found:
+        raise ParameterError(
+            f"{printable(folder)}: no {kind}, {name} is missing; allowed: a folder written by {command}; give its path"
         )
     return path
 

@@ -13,8 +13,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from humanwalk.files import (
+    READABLE,
     WRITABLE,
     file_errors,
+    file_of,
     locked,
     make_folder,
     read_regular,
@@ -39,7 +41,6 @@ REPLAY = "replay.html"
 PLOTS = "plots"
 """Names inside a run folder."""
 
-READABLE = "a run folder that you may read; check its permissions"
 
 SIGNALS_BYTES_PER_ROW = 2600
 REPLAY_BYTES_PER_FRAME = 11_000
@@ -72,13 +73,7 @@ class Run:
         """
         path = Path(path)
         for name in (SCENARIO, SIGNALS, SUMMARY):
-            with file_errors(path, READABLE):
-                found = require_inside(path, path / name).is_file()
-            if not found:
-                raise ParameterError(
-                    f"{printable(path)}: no run, {name} is missing; allowed: a folder written by humanwalk walk; "
-                    "give its path, or walk again"
-                )
+            file_of(path, name, "run", "humanwalk walk")
         return Run(path)
 
     @cached_property

@@ -22,6 +22,7 @@ import pyarrow.parquet as pq
 from humanwalk.files import (
     WRITABLE,
     file_errors,
+    file_of,
     locked,
     make_folder,
     read_regular,
@@ -193,15 +194,7 @@ def read_study(folder: Path | str) -> Study:
     Raises:
         ParameterError: the folder holds no study, or one that cannot be read.
     """
-    path = require_inside(Path(folder), Path(folder) / STUDY)
-    with file_errors(path, "a folder that you may read"):
-        found = path.is_file()
-    if not found:
-        raise ParameterError(
-            f"{printable(folder)}: no study, {STUDY} is missing; allowed: a folder written by humanwalk study; give "
-            "its path"
-        )
-    study = load_study(path)
+    study = load_study(file_of(Path(folder), STUDY, "study", "humanwalk study"))
     if isinstance(study.design, Rows):
         require_inside(Path(folder), Path(study.design.file))
     return study

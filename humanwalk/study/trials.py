@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from humanwalk.files import WRITABLE, file_errors, locked, make_folder, require_inside, write_text
+from humanwalk.files import WRITABLE, file_errors, file_of, locked, make_folder, require_inside, write_text
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.scenario import dump_scenario
 from humanwalk.study import journal
@@ -140,15 +140,7 @@ def read_tuning(folder: Path) -> Tuning:
     Raises:
         ParameterError: the folder holds no tuning, or one that cannot be read.
     """
-    path = require_inside(folder, folder / TUNING)
-    with file_errors(path, "a folder that you may read"):
-        found = path.is_file()
-    if not found:
-        raise ParameterError(
-            f"{printable(folder)}: no tuning, {TUNING} is missing; allowed: a folder written by humanwalk tune; give "
-            "its path"
-        )
-    return load_tuning(path)
+    return load_tuning(file_of(folder, TUNING, "tuning", "humanwalk tune"))
 
 
 def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:

@@ -10,6 +10,7 @@ from humanwalk.terrain.face import Color, Face
 from humanwalk.terrain.piece import Piece
 
 Direction = Literal["up", "down"]
+UPWARD: dict[Direction, float] = {"up": 1.0, "down": -1.0}
 
 
 @dataclass(frozen=True)
@@ -30,18 +31,13 @@ class Stairs(Piece):
     number: int = quantity(5, "", 1, 200)
     """Number of steps."""
 
-    @property
-    def _rise(self) -> float:
-        return self.rise if self.direction == "up" else -self.rise
-
     def faces(self, width: float) -> list[Face]:
-        return [
-            self.across((k * self.tread, (k + 1) * self.tread), width, (k + 1) * self._rise) for k in range(self.number)
-        ]
+        rise = UPWARD[self.direction] * self.rise
+        return [self.across((k * self.tread, (k + 1) * self.tread), width, (k + 1) * rise) for k in range(self.number)]
 
     @property
     def end_height(self) -> float:
-        return self.number * self._rise
+        return self.number * UPWARD[self.direction] * self.rise
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,7 @@ class Curb(Piece):
 
     @property
     def end_height(self) -> float:
-        return self.height if self.direction == "up" else -self.height
+        return UPWARD[self.direction] * self.height
 
     def faces(self, width: float) -> list[Face]:
         return [self.across((0.0, self.length), width, self.end_height)]

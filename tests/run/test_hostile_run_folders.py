@@ -285,7 +285,7 @@ def test_folder_that_may_not_be_read_is_refused(folder: Path, monkeypatch: pytes
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
 
     monkeypatch.setattr(Path, "is_file", denied)
-    assert "Permission denied; allowed: a run folder that you may read" in refusal(read, folder)
+    assert "Permission denied; allowed: a folder that you may read" in refusal(read, folder)
 
 
 @pytest.mark.parametrize("name", [SCENARIO, SIGNALS, SUMMARY])

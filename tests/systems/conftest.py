@@ -12,11 +12,13 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder, System
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput, Multiplexer, Sine
 
+from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.pd_control import PdLaw, install_gains
 from humanwalk.numerics import Array
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 KP, KD, INERTIA = 100.0, 10.0, 0.5
+TIME_STEP = 0.002
 
 
 @dataclass
@@ -59,7 +61,7 @@ def make_rig(
     load: float = 0.0,
     limit: float = np.inf,
     law: PdLaw = "semi_implicit",
-    time_step: float = 0.002,
+    time_step: float = TIME_STEP,
     reports_saturation: bool = True,
 ) -> Rig:
     """Make the rig.
@@ -116,6 +118,15 @@ def make_rig(
         logged += map(system.get_output_port, range(system.num_output_ports()))
     sinks = [LogVectorOutput(port, builder, time_step) for port in logged]
     return Rig(plant, system, Simulator(builder.Build()), sinks)
+
+
+@pytest.fixture(scope="session")
+def discrete_plant() -> MultibodyPlant:
+    """The human with the step of the rig."""
+    plant = MultibodyPlant(TIME_STEP)
+    add_human(plant, Subject())
+    plant.Finalize()
+    return plant
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,6 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.adaptive_feedforward import AdaptationParameters
 from humanwalk.control.pd_control import PD_LAWS, PdLaw
 from humanwalk.systems.adaptive_feedforward import AdaptiveFeedforward
@@ -23,14 +22,6 @@ IDEAL = AdaptationParameters(error_rate=15.0, adaptation_time=0.2, leakage=0.0, 
 
 def feedforward(plant: MultibodyPlant, parameters: AdaptationParameters = IDEAL, max_load: float = 50.0) -> Any:
     return AdaptiveFeedforward(plant, np.array([KP]), np.array([INERTIA]), np.array([max_load]), parameters)
-
-
-@pytest.fixture(scope="module")
-def discrete_plant() -> MultibodyPlant:
-    plant = MultibodyPlant(H)
-    add_human(plant, Subject())
-    plant.Finalize()
-    return plant
 
 
 def test_ports_and_signal(discrete_plant: MultibodyPlant, joints: JointMap) -> None:

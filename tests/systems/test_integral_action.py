@@ -9,7 +9,6 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, add_human
 from humanwalk.control.pd_control import PD_LAWS, PdLaw
 from humanwalk.systems.integral_action import IntegralAction
 
@@ -20,14 +19,6 @@ INTEGRAL_TIME = 0.2
 
 def action(plant: MultibodyPlant) -> IntegralAction:
     return IntegralAction(plant, np.array([KP / INTEGRAL_TIME]))
-
-
-@pytest.fixture(scope="module")
-def discrete_plant() -> MultibodyPlant:
-    plant = MultibodyPlant(H)
-    add_human(plant, Subject())
-    plant.Finalize()
-    return plant
 
 
 def test_ports_and_signal(discrete_plant: MultibodyPlant, joints: JointMap) -> None:
