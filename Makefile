@@ -32,7 +32,7 @@ lint: .venv/.installed ## Check style, types and import layers
 docs: .venv/.installed ## Build the book in build/docs; needs no network
 	@NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --quiet --strict
 
-gallery: .venv/.installed ## Regenerate all pictures and videos of the book (half an hour)
+gallery: .venv/.installed ## Regenerate all pictures and videos of the book (a quarter of an hour)
 	@$(BIN)/python docs/make_gallery.py
 
 lock: .venv/.installed ## Update requirements.lock to the newest allowed versions

@@ -1,4 +1,4 @@
-"""Makes every picture and video of the book anew: python docs/make_gallery.py (half an hour), or make gallery.
+"""Makes every picture and video of the book: python docs/make_gallery.py (a quarter of an hour), or make gallery.
 
 With names of shots, as in `python docs/make_gallery.py walk brisk`, it makes those only. Needs the extra `video` and a
 Chromium. Simulations are kept under runs/gallery: remove it to walk them again.
