@@ -20,6 +20,10 @@ ADDRESS, TITLE = "url = location.toString();", "<title>Drake MeshCat</title>"
 """What is replaced in the page: Meshcat listens at another port than the server of the page."""
 
 
+ADDED = ("endless_floor.js", "software_rendering.js", "drive_panel.html")
+"""Our part of the page."""
+
+
 class Status(TypedDict):
     """What the page shows.
 
@@ -43,15 +47,12 @@ class Status(TypedDict):
 def drive_html(meshcat_url: str) -> str:
     """The page: that of a Meshcat, which is served at `meshcat_url`, with our panel."""
     page = Path(FindResourceOrThrow(PAGE)).read_text(encoding="utf-8")
-    script, panel = (
-        files("humanwalk.view").joinpath(name).read_text(encoding="utf-8")
-        for name in ("software_rendering.js", "drive_panel.html")
-    )
+    floor, rendering, panel = (files("humanwalk.view").joinpath(name).read_text(encoding="utf-8") for name in ADDED)
     for old, new in ((ADDRESS, f'url = "{meshcat_url}/";'), (TITLE, "<title>humanwalk drive</title>")):
         assert old in page, "another Meshcat"
         page = page.replace(old, new, 1)
     before, body_end, after = page.rpartition("</body>")
-    return f"{before}<script>{script}</script>{panel}{body_end}{after}"
+    return f"{before}<script>{floor}{rendering}</script>{panel}{body_end}{after}"
 
 
 def drive_policy(meshcat_url: str) -> str:

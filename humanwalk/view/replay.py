@@ -50,7 +50,7 @@ TITLE = re.compile(r"<title>([^<]{0,2000})</title>")
 PLACE = "<!-- runs -->"
 """Where the runs are in the page without any."""
 
-PAGE_FILES = ("replay_player.html", "replay_scene.js", "replay_plots.js", "replay_player.js")
+PAGE_FILES = ("replay_player.html", "endless_floor.js", "replay_scene.js", "replay_plots.js", "replay_player.js")
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 // The picture: loads the recordings into Meshcat's viewer, extends the floor, places cameras and walkers.
 const picture = (() => {
-  const FLOOR_RADIUS = 45, CLEAR_RADIUS = 12, TILE = 5, BESIDE = 1.3;
+  const BESIDE = 1.3;
 
   const recordings = [...document.querySelectorAll("script.recording")];
   const find = (...path) => viewer.scene_tree.find(path).object;
@@ -36,60 +36,11 @@ const picture = (() => {
 
   const runs = recordings.map((_, run) => ({group: find(`run${run}`), scene: find(`run${run}`, "drake")}));
 
-  // Meshcat's floor ends; this one goes along with the walker, and vanishes in the distance.
-  const tile = () => {
-    const canvas = document.createElement("canvas");
-    const size = canvas.width = canvas.height = 1024, draw = canvas.getContext("2d");
-    draw.fillStyle = "#dbdedb";
-    draw.fillRect(0, 0, size, size);
-    for (let line = 0; line <= TILE; line++) {
-      const place = size * line / TILE, end = line % TILE === 0;
-      draw.fillStyle = end ? "#8a9296" : "#b2b6b8";
-      const width = size * (end ? 0.022 : 0.012) / TILE;
-      draw.fillRect(place - width / 2, 0, width, size);
-      draw.fillRect(0, place - width / 2, size, width);
-    }
-    const texture = new THREE.CanvasTexture(canvas);
-    texture.colorSpace = THREE.SRGBColorSpace;
-    texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-    texture.anisotropy = 8;
-    return texture;
+  const floor = endlessFloor();
+  const moveFloor = () => {
+    runs.forEach((_, run) => floor.hideDrawn(find(`run${run}`, "drake", "visualizer")));
+    floor.place(find("run0", "drake", "visualizer"), runs[0].scene, runs[0].group);
   };
-  const makeFloor = () => {
-    const drawn = find("run0", "drake", "visualizer");
-    const box = drawn.children.find(child => child.name === "floor");
-    if (!box) return () => {};
-    runs.forEach((_, run) => {
-      for (const child of find(`run${run}`, "drake", "visualizer").children)
-        if (/^(floor$|along_|meter_)/.test(child.name)) child.visible = false;
-    });
-    const geometry = new THREE.RingGeometry(0.001, FLOOR_RADIUS, 48, 12);
-    const {position, uv} = geometry.attributes, colors = new Float32Array(4 * position.count).fill(1);
-    for (let i = 0; i < position.count; i++) {
-      const distance = Math.hypot(position.getX(i), position.getY(i));
-      colors[4 * i + 3] = Math.max(0, Math.min(1, (FLOOR_RADIUS - distance) / (FLOOR_RADIUS - CLEAR_RADIUS)));
-      uv.setXY(i, position.getX(i) / TILE, position.getY(i) / TILE);
-    }
-    geometry.setAttribute("color", new THREE.BufferAttribute(colors, 4));
-    const map = tile();
-    const material = new THREE.MeshLambertMaterial({map, vertexColors: true, transparent: true});
-    const floor = new THREE.Mesh(geometry, material);
-    floor.name = "endless floor";
-    floor.receiveShadow = true;
-    floor.renderOrder = -1;
-    floor.quaternion.setFromRotationMatrix(box.matrix);
-    runs[0].group.add(floor);
-    const normal = new THREE.Vector3(0, 0, 1).applyQuaternion(floor.quaternion);
-    const inPlane = floor.quaternion.clone().invert();
-    return () => {
-      // The plane through the origin of W, seen from the point of the scene that stays.
-      const origin = runs[0].scene.position;
-      floor.position.set(0, 0, origin.dot(normal) / normal.z);
-      const {x, y} = floor.position.clone().sub(origin).applyQuaternion(inPlane);
-      map.offset.set((x / TILE) % 1, (y / TILE) % 1);
-    };
-  };
-  const moveFloor = makeFloor();
 
   const {views} = JSON.parse(document.getElementById("constants").textContent);
   let arrangement = "beside", across = [0, 1];

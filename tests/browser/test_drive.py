@@ -52,6 +52,14 @@ def drive(browser: None, tmp_path: Path) -> Iterator[Any]:
         process.communicate()
 
 
+FLOORS = """() => [
+    viewer.scene.getObjectByName("endless floor") !== undefined,
+    viewer.scene_tree.find(["drake", "visualizer"]).object.children.flatMap(
+        node => node.name === "floor" ? [node.visible] : []),
+]"""
+"""Whether the floor without edge is there, and whether those that Meshcat draws are visible."""
+
+
 @pytest.fixture
 def tab(drive: Any) -> Iterator[Any]:
     """The page in a headless browser."""
@@ -106,6 +114,7 @@ def test_the_walker_obeys_the_page(drive: Any, tab: Any) -> None:
     paused = text(tab, "time")
     tab.wait_for_timeout(500)
     assert text(tab, "time") == paused
+    assert tab.evaluate(FLOORS) == [True, [False]]
 
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=PATIENCE) == 0

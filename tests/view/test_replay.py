@@ -133,7 +133,7 @@ def test_policy_permits_only_the_scripts_of_the_page_and_no_request(elements: El
     directives = dict(directive.strip().split(" ", 1) for directive in policy.split(";"))
     scripts = re.findall(r'<script(?: type="text/javascript")?>(.*?)</script>', page, re.DOTALL)
     hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
-    assert len(hashes) == 5
+    assert len(hashes) == 6
     assert directives.pop("script-src").split() == [f"'sha256-{digest}'" for digest in hashes]
     assert directives == {
         "default-src": "'none'",
