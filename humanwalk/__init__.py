@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from humanwalk.study.execute import run_study
     from humanwalk.study.study import Study, load_study
     from humanwalk.study.table import read_table
+    from humanwalk.study.tune import tune
+    from humanwalk.study.tuning import Tuning, load_tuning
     from humanwalk.view.plots import plot
 
 __version__ = version("humanwalk")
@@ -39,8 +41,10 @@ _HOMES = {
     "Run": "humanwalk.run.folder",
     "Scenario": "humanwalk.scenario",
     "Study": "humanwalk.study.study",
+    "Tuning": "humanwalk.study.tuning",
     "load_scenario": "humanwalk.scenario",
     "load_study": "humanwalk.study.study",
+    "load_tuning": "humanwalk.study.tuning",
     "local_client": "humanwalk.study.cluster",
     "make_playback": "humanwalk.diagrams.playback",
     "make_walker": "humanwalk.diagrams.walker",
@@ -48,6 +52,7 @@ _HOMES = {
     "read_table": "humanwalk.study.table",
     "run_study": "humanwalk.study.execute",
     "simulate": "humanwalk.run.simulate",
+    "tune": "humanwalk.study.tune",
 }
 
 __all__ = [
@@ -56,9 +61,11 @@ __all__ = [
     "Run",
     "Scenario",
     "Study",
+    "Tuning",
     "__version__",
     "load_scenario",
     "load_study",
+    "load_tuning",
     "local_client",
     "make_playback",
     "make_walker",
@@ -66,6 +73,7 @@ __all__ = [
     "read_table",
     "run_study",
     "simulate",
+    "tune",
 ]
 
 
