@@ -106,6 +106,27 @@ class SolePatch:
     area: Array
 
 
+@dataclass(frozen=True)
+class SoleExtent:
+    """The rectangle of a flat sole, relative to the ankle above it.
+
+    Attributes:
+        back, front: Distances of heel and toe end behind and ahead of the ankle [m].
+        half_width: Distance of either side [m].
+    """
+
+    back: float
+    front: float
+    half_width: float
+
+
+def sole_extent(skeleton: Skeleton) -> SoleExtent:
+    """Return the rectangle around a sole with straight toes."""
+    scale = skeleton.stature / REFERENCE_STATURE
+    back, front = -SOLE_PARTS[0].x[0] * scale, SOLE_PARTS[-1].x[1] * scale
+    return SoleExtent(back, front, 0.5 * scale * max(part.width for part in SOLE_PARTS))
+
+
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
     """Return the point set: medial and lateral spheres below heel, ball and toes of both feet."""
     scale = skeleton.stature / REFERENCE_STATURE

@@ -7,6 +7,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
+from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.plant import Subject
@@ -16,11 +17,12 @@ from humanwalk.choices.world import World
 from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, quantity
+from humanwalk.quantity import ParameterError, choice, quantity
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Terrain
 from humanwalk.walking.command import CommandParameters
+from humanwalk.walking.knowledge import KNOWLEDGE, ExactKnowledge, TerrainKnowledge
 from humanwalk.walking.parameters import StepPlannerParameters
 
 START_FLEXION = 0.12
@@ -28,6 +30,9 @@ START_FLEXION = 0.12
 
 SETTLING = 2.0
 """Time that the walk takes to settle after its first change of speed [s]: four steps, docs/balance.md."""
+
+KNOWLEDGE_ERRORS = 4
+"""Stream of the seed from which errors of the known terrain are drawn."""
 
 TASK_GAINS = 3
 """Stream of the seed from which the noise of the tasks' gains is drawn."""
@@ -53,6 +58,9 @@ class BalancedController:
 
     command: CommandParameters = CommandParameters()
     """Speed and heading over time."""
+
+    knowledge: TerrainKnowledge = choice(KNOWLEDGE, ExactKnowledge())
+    """What planner and whole-body program know of the terrain."""
 
     planner: StepPlannerParameters = StepPlannerParameters()
     """Steps and balance."""
@@ -118,7 +126,14 @@ class BalancedController:
         command = world.add("command", world.sources.command(self.command))
         planner = world.add(
             "planner",
-            GaitPlanner(world.model, self.planner, self.first_swing, self.control_period, world.terrain),
+            GaitPlanner(
+                world.model,
+                self.planner,
+                self.first_swing,
+                self.control_period,
+                sole_extent(world.subject.skeleton),
+                self.knowledge.ground(world.terrain, np.random.default_rng((world.seed, KNOWLEDGE_ERRORS))),
+            ),
             com=world.port("body_observer", "com"),
             ankles=world.port("body_observer", "ankles"),
             foot_forces=world.port("foot_contact", "foot_forces"),
@@ -128,9 +143,7 @@ class BalancedController:
         posture = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
         controller = world.add(
             "controller",
-            WholeBodyController(
-                world.model, world.subject.skeleton, tasks, posture, self.control_period, world.terrain
-            ),
+            WholeBodyController(world.model, world.subject.skeleton, tasks, posture, self.control_period),
             state=world.state,
             plan=planner.GetOutputPort("plan"),
         )

@@ -12,10 +12,18 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import Dynamics
+from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array, Indices, Mask
 from humanwalk.numerics.rotation import cross_matrix
-from humanwalk.terrain import Terrain
+from humanwalk.terrain import Ground
 from humanwalk.walking.walking_reference import FootTask, WalkingReference
+
+FORCE_COST = 1e-6
+"""Cost per squared contact force [1/N2] (our choice); distributes the load over the contact points."""
+FORCE_UNIT = FORCE_COST**-0.5
+"""Unit of the forces in the program, whose square costs 1/2 [N]."""
+EDGES = 4
+"""Number of edges of a friction pyramid."""
 
 
 @dataclass(frozen=True)
@@ -54,55 +62,69 @@ class Soles:
             is_heel=np.isin(under, hindfeet),
         )
 
-    def on(self, terrain: Terrain, body: Dynamics) -> SolesOnTerrain:
-        """The points of the soles relative to the terrain below them."""
+    def on(self, ground: Ground, body: Dynamics) -> SolesOnGround:
+        """The points of the soles relative to the ground below them."""
         X_WB = body.X_WB[self.body]
         r_W = (X_WB[:, :, :3] @ self.p_BP[:, :, None])[:, :, 0]
         p_W = X_WB[:, :, 3] + r_W
-        R_SW = terrain.axes(p_W[:, :2])
-        return SolesOnTerrain(self, r_W, (p_W[:, 2] - terrain.height(p_W[:, :2])) * R_SW[:, 2, 2], R_SW)
+        xy = p_W[:, :2]
+        R_SW = ground.axes(xy)
+        return SolesOnGround(self, r_W, (p_W[:, 2] - ground.height(xy)) * R_SW[:, 2, 2], R_SW, ground.friction(xy))
 
 
-class SolesOnTerrain(NamedTuple):
+class SolesOnGround(NamedTuple):
     """The points of `Soles` at one state.
 
     Attributes:
         soles: the points.
         r_W: from the origin of each point's body to the point, in W [m], (k + 2, 3).
-        height: above the terrain along its normal [m], (k + 2,).
-        R_SW: axes of the terrain below each point, (k + 2, 3, 3).
+        height: above the ground along its normal [m], (k + 2,).
+        R_SW: axes of the ground below each point, (k + 2, 3, 3).
+        friction: Coulomb coefficient of the ground below each point, (k + 2,).
     """
 
     soles: Soles
     r_W: Array
     height: Array
     R_SW: Array
+    friction: Array
 
-    def heel(self, side: Side) -> tuple[Array, float, Array]:
-        """Middle of a heel: position in the hindfoot's frame [m], height above the terrain [m], R_WS of the terrain."""
+    def heel(self, side: Side) -> tuple[Array, float]:
+        """Middle of a heel: position in the hindfoot's frame [m], height above the ground [m]."""
         i = SIDES.index(side) - len(SIDES)
-        return self.soles.p_BP[i], float(self.height[i]), self.R_SW[i].T
+        return self.soles.p_BP[i], float(self.height[i])
 
-    def contacts(self, body: Dynamics, reference: WalkingReference, edges_S: Array, contact_height: float) -> Contacts:
+    def contacts(self, body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Contacts:
         """The points that can carry a force.
 
         Args:
             body: at this state.
             reference: loads of the feet.
-            edges_S: edges of a friction pyramid in the axes of the terrain, (edges, 3).
-            contact_height: maximum height of a point in contact above the terrain [m].
+            p: limits of friction and of the height of a point in contact.
         """
         soles = self.soles
         feet = [reference.foot(side) for side in SIDES]
         load = np.array([foot.load for foot in feet])[soles.side]
         load[soles.is_heel & np.array([foot.task is FootTask.HEEL_OFF for foot in feet])[soles.side]] = 0.0
-        (points,) = np.nonzero((self.height[: load.size] < contact_height) & (load > 0.0))
+        (points,) = np.nonzero((self.height[: load.size] < p.contact_height) & (load > 0.0))
         J = body.J[soles.body[points]]
         # The velocity of a point is v + w x r.
         J_points = J[:, 3:] - cross_matrix(self.r_W[points]) @ J[:, :3]
-        edges_W = edges_S @ self.R_SW[points]
+        mu = np.minimum(p.friction, p.friction_use * self.friction[points])
+        edges_W = friction_edges(mu) @ self.R_SW[points]
         J_edges = edges_W @ J_points
         return Contacts(points, load[points], edges_W, J_edges.reshape(-1, J.shape[-1]))
+
+
+def friction_edges(mu: Array) -> Array:
+    """Edges of friction pyramids along the third axis, (n, 4, 3), for n friction coefficients; as long as a force of
+    `FORCE_UNIT` along that axis.
+    """
+    edges = np.zeros((mu.size, EDGES, 3))
+    edges[:, :, 2] = 1.0
+    edges[:, 0, 0] = edges[:, 2, 1] = mu
+    edges[:, 1, 0] = edges[:, 3, 1] = -mu
+    return FORCE_UNIT * edges
 
 
 class Contacts(NamedTuple):

@@ -89,7 +89,10 @@ class WholeBodyParameters:
     """Posture of arms, shoulder girdle, neck and head."""
 
     friction: float = quantity(0.55, "", 0.1, 1.0)
-    """Friction coefficient of the planned contact forces; below that of the ground, 0.7, as a margin."""
+    """Largest friction coefficient of the planned contact forces; below that of ordinary ground, 0.7, as a margin."""
+
+    friction_use: float = quantity(0.8, "", 0.1, 1.0)
+    """Share of the ground's friction coefficient that planned contact forces use at most."""
 
     contact_height: float = quantity(0.008, "m", 0.001, 0.05)
     """Height of a contact point above the ground from which on it carries no force."""

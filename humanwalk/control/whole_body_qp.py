@@ -11,20 +11,14 @@ from humanwalk.body.contact import ContactSphere
 from humanwalk.body.limbs import JOINT_GROUPS, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
-from humanwalk.control.whole_body_contacts import Contacts, Soles
+from humanwalk.control.whole_body_contacts import EDGES, FORCE_UNIT, Contacts, Soles
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
 from humanwalk.control.whole_body_tasks import tasks
 from humanwalk.numerics import Array
-from humanwalk.terrain import Terrain
 from humanwalk.walking.walking_reference import WalkingReference
 
 EFFORT_COST = 1e-4
 """Cost per squared joint acceleration (our choice): small against the weights of the tasks."""
-
-FORCE_COST = 1e-6
-"""Cost per squared contact force [1/N2] (our choice); distributes the load over the contact points."""
-FORCE_UNIT = FORCE_COST**-0.5
-"""Unit of the forces in the program, whose square costs 1/2 [N]."""
 
 MAX_FORCE = 1500.0
 """Maximum contact force along each edge of a friction pyramid [N] (our choice): twice the weight of the body."""
@@ -78,7 +72,6 @@ class WholeBodyQp:
         dynamics: BodyDynamics,
         spheres: Sequence[ContactSphere],
         parameters: WholeBodyParameters,
-        terrain: Terrain,
     ) -> None:
         """Make the program.
 
@@ -86,7 +79,6 @@ class WholeBodyQp:
             dynamics: of the body; its prescribed joints (arms, neck and head) come last.
             spheres: contact points of the soles.
             parameters: tasks and limits.
-            terrain: on which the feet stand.
         """
         self.parameters = parameters
         joints = dynamics.joints
@@ -95,7 +87,6 @@ class WholeBodyQp:
         self.limits = joints.effort_limits[order]
         self._q = joints.q[order]
         self._soles = Soles.of(spheres, dynamics.bodies)
-        self._terrain = terrain
 
         gains = [_posture_gains(parameters).get(name, parameters.arms) for name in self.names]
         self._stiffness, self._damping = np.array([(g.stiffness, g.damping) for g in gains]).T
@@ -110,9 +101,6 @@ class WholeBodyQp:
         self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
         torque_limits = np.concatenate((np.zeros(6), self.limits[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
-
-        mu = parameters.friction
-        self._edges_S = FORCE_UNIT * np.array(((mu, 0, 1), (-mu, 0, 1), (0, mu, 1), (0, -mu, 1)), dtype=float)
 
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
         """The solution, or None if the solver finds none."""
@@ -141,7 +129,7 @@ class WholeBodyQp:
         q, v = body.q[self._q], body.v[6:]
         desired = self._stiffness * (posture.angle - q) + self._damping * (posture.rate - v)
         desired, prescribed = desired[: m - 6], desired[m - 6 :]
-        soles = self._soles.on(self._terrain, body)
+        soles = self._soles.on(reference.ground, body)
 
         J, a, w = tasks(body, soles, reference, p)
         a -= J[:, m:] @ prescribed
@@ -151,8 +139,8 @@ class WholeBodyQp:
         g = -a @ WJ
         g[6:] -= self._weight * desired
 
-        contacts = soles.contacts(body, reference, self._edges_S, p.contact_height)
-        max_force = np.repeat(MAX_FORCE / FORCE_UNIT * contacts.load, len(self._edges_S))
+        contacts = soles.contacts(body, reference, p)
+        max_force = np.repeat(MAX_FORCE / FORCE_UNIT * contacts.load, EDGES)
         toward_limits = JOINT_LIMIT_STIFFNESS * (self._range - q[: m - 6]) - JOINT_LIMIT_DAMPING * v[: m - 6]
         bounds = (
             (np.zeros_like(max_force), max_force),

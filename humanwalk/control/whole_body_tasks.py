@@ -10,7 +10,7 @@ import numpy as np
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.control.body_dynamics import Dynamics, FrameMotion
-from humanwalk.control.whole_body_contacts import SolesOnTerrain
+from humanwalk.control.whole_body_contacts import SolesOnGround
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import rotation_vector, yaw_pitch
@@ -40,22 +40,20 @@ class Foot(NamedTuple):
         hindfoot, toes: frames of its first and last body.
         p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
         heel_height: of that point above the terrain [m].
-        R_WS: axes of the terrain below the heel, (3, 3).
     """
 
     hindfoot: FrameMotion
     toes: FrameMotion
     p_BHeel: Array
     heel_height: float
-    R_WS: Array
 
-    def sinking(self, p: WholeBodyParameters) -> Array:
+    def sinking(self, R_WS: Array, p: WholeBodyParameters) -> Array:
         """Desired velocity of a stance foot in W [m/s], (3,): 0, or toward the ground if it is still in the air."""
-        return -p.sinking_speed * self.R_WS[:, 2] if self.heel_height > p.contact_height else REST
+        return -p.sinking_speed * R_WS[:, 2] if self.heel_height > p.contact_height else REST
 
 
 def tasks(
-    body: Dynamics, soles: SolesOnTerrain, reference: WalkingReference, p: WholeBodyParameters
+    body: Dynamics, soles: SolesOnGround, reference: WalkingReference, p: WholeBodyParameters
 ) -> tuple[Array, Array, Array]:
     """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,)."""
     found = [
@@ -97,23 +95,23 @@ def _no_motion(frame: FrameMotion, velocity: Array, gains: TaskGains) -> Task:
     return Task(frame.J, desired - frame.bias, gains.weight)
 
 
-def _flat(foot: Foot, _: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
-    yield _no_motion(foot.hindfoot, foot.sinking(p), p.stance)
+def _flat(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
+    yield _no_motion(foot.hindfoot, foot.sinking(reference.R_WS, p), p.stance)
 
 
 def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
     """The heel stands, and the foot turns until it is parallel to the terrain."""
     heel = foot.hindfoot.point(foot.p_BHeel)
-    desired = p.stance.damping * (foot.sinking(p) - heel.velocity)
+    desired = p.stance.damping * (foot.sinking(reference.R_WS, p) - heel.velocity)
     yield Task(heel.J, desired - heel.bias, p.stance.weight)
-    yield _rotation(foot.hindfoot, foot.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike)
+    yield _rotation(foot.hindfoot, reference.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike)
 
 
 def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
     """The toes stand, and the hindfoot pitches about its own axis."""
     yield _no_motion(foot.toes, REST, p.stance)
     angle, rate, acceleration = reference.pitch
-    R_WG = foot.R_WS @ yaw_pitch(reference.yaw, angle)
+    R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
     whole = _rotation(foot.hindfoot, R_WG, p.heel_off, rate * axis, acceleration * axis)
     yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
@@ -132,7 +130,7 @@ def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iter
         desired[:2] *= p.swing_acceleration_limit / level
     yield Task(frame.J[3:], desired - frame.bias[3:], gains.weight)
     angle, pitch_rate, pitch_acceleration = reference.pitch
-    R_WG = foot.R_WS @ yaw_pitch(reference.yaw, angle)
+    R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
     yield _rotation(frame, R_WG, p.swing_rotation, pitch_rate * axis, pitch_acceleration * axis)
 

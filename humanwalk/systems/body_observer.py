@@ -19,8 +19,8 @@ class BodyObserver(LeafSystem):
     Outputs:
         soles: (6) position of the right, then the left sole frame in W [m].
         com: (6) position [m], then velocity [m/s] of the center of mass in W.
-        ankles: (24) of the right, then the left ankle in W: position [m], velocity [m/s], x axis of the hindfoot and
-            its angular velocity [rad/s].
+        ankles: (30) of the right, then the left ankle in W: position [m], velocity [m/s], x and z axis of the hindfoot
+            and its angular velocity [rad/s].
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
@@ -33,7 +33,7 @@ class BodyObserver(LeafSystem):
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
         com = self.DeclareVectorOutputPort("com", 6, self._calc_com)
-        self.DeclareVectorOutputPort("ankles", 24, self._calc_ankles)
+        self.DeclareVectorOutputPort("ankles", 30, self._calc_ankles)
         self.signals = (
             Signal("soles", soles, tuple(column for side in SIDES for column in xyz(f"{side.lower()}_sole.", "m"))),
             Signal("com", com, (*xyz("com.", "m"), *xyz("com.velocity_", "m_s"))),
@@ -61,5 +61,11 @@ class BodyObserver(LeafSystem):
         parts: list[Array] = []
         for ankle in self._ankles:
             X_WF, V_WF = ankle.CalcPoseInWorld(body), ankle.CalcSpatialVelocityInWorld(body)
-            parts += X_WF.translation(), V_WF.translational(), X_WF.rotation().col(0), V_WF.rotational()
+            parts += (
+                X_WF.translation(),
+                V_WF.translational(),
+                X_WF.rotation().col(0),
+                X_WF.rotation().col(2),
+                V_WF.rotational(),
+            )
         output.SetFromVector(np.concatenate(parts))

@@ -6,17 +6,15 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
+from humanwalk.body.contact import SoleExtent
 from humanwalk.body.limbs import LEGS, other_side
 from humanwalk.systems.signal import Signal
-from humanwalk.terrain.terrain import Terrain
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootTask, Phase, WalkingReference
-
-FORCE_Z = 2
-"""Element of a foot in `FootForceObserver`'s output that holds the vertical force."""
 
 POINTS = ("zmp", "dcm", "dcm_reference", "foothold")
 """Points of the reference in the output `balance`."""
@@ -29,7 +27,7 @@ class GaitPlanner(LeafSystem):
     performs before the discrete updates of the same time, so that the controller follows the current plan.
 
     Inputs:
-        com, ankles: (6), (24) see BodyObserver.
+        com, ankles: (6), (30) see BodyObserver.
         foot_forces: (16) see FootForceObserver.
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
 
@@ -46,7 +44,8 @@ class GaitPlanner(LeafSystem):
         parameters: StepPlannerParameters,
         first_swing: Side,
         period: float,
-        terrain: Terrain,
+        sole: SoleExtent,
+        ground: Ground,
     ) -> None:
         """Create the planner.
 
@@ -55,27 +54,28 @@ class GaitPlanner(LeafSystem):
             parameters: Parameters of the planner.
             first_swing: The foot of the first step.
             period: Control period [s].
-            terrain: The ground.
+            sole: Extent of a sole.
+            ground: What is known of the ground.
         """
         super().__init__()
-        self._terrain = terrain
+        self._ground = ground
         upright, leg = plant.CreateDefaultContext(), LEGS[first_swing]
-        hip, ankle, sole = (
+        hip, ankle, bottom = (
             float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
             for frame in (leg.thigh, leg.hindfoot, leg.sole)
         )
         self._planner = StepPlanner(
             parameters,
-            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(upright)[2]) - sole,
-            ankle_height=ankle - sole,
+            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(upright)[2]) - bottom,
+            ankle_height=ankle - bottom,
             leg_length=hip - ankle,
             first_swing=first_swing,
             period=period,
-            terrain=terrain,
+            sole=sole,
+            ground=ground,
         )
-        self._step_duration = parameters.timing.step
         self._com = self.DeclareVectorInputPort("com", 6)
-        self._ankles = self.DeclareVectorInputPort("ankles", 24)
+        self._ankles = self.DeclareVectorInputPort("ankles", 30)
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
         self._memory = self.DeclareAbstractState(Value[object]())
@@ -98,18 +98,18 @@ class GaitPlanner(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(period, 0.0, self._plan)
 
     def _start(self, context: Context, state: State) -> EventStatus:
-        body = self._body(context)
+        body = self._body(context, self._ground)
         return self._store(state, *self._planner.update(self._planner.start(body), body, Command()))
 
     def _plan(self, context: Context, state: State) -> EventStatus:
         memory = context.get_abstract_state(int(self._memory)).get_value()
         command = Command(*self._command.Eval(context).tolist())
-        return self._store(state, *self._planner.update(memory, self._body(context), command))
+        return self._store(state, *self._planner.update(memory, self._body(context, memory.ground), command))
 
-    def _body(self, context: Context) -> BodyState:
-        ankles = self._ankles.Eval(context).reshape(2, 4, 3)
+    def _body(self, context: Context, ground: Ground) -> BodyState:
+        ankles = self._ankles.Eval(context).reshape(2, 5, 3)
         forces = self._foot_forces.Eval(context).reshape(2, 8)
-        return BodyState.measured(self._com.Eval(context), ankles, forces[:, FORCE_Z], self._terrain)
+        return BodyState.measured(self._com.Eval(context), ankles, forces, ground)
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)
@@ -125,7 +125,7 @@ class GaitPlanner(LeafSystem):
     def _phases(self, stance: Side, reference: WalkingReference) -> list[float]:
         if reference.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
             return [0.0, 0.0]
-        half = min(0.5 * reference.phase_time / self._step_duration, 0.5)
+        half = min(0.5 * reference.phase_time / reference.step_duration, 0.5)
         phases = {stance: half, other_side(stance): half + 0.5}
         return [phases[side] for side in SIDES]
 

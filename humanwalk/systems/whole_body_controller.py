@@ -13,7 +13,6 @@ from humanwalk.control.body_dynamics import BodyDynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.systems.signal import Signal
-from humanwalk.terrain import Terrain
 from humanwalk.walking.walking_reference import WalkingReference
 
 STATUS_COLUMNS = ("qp.solved", "qp.failures", "qp.failures_in_a_row")
@@ -46,7 +45,6 @@ class WholeBodyController(LeafSystem):
         parameters: WholeBodyParameters,
         posture: Mapping[str, float],
         period: float,
-        terrain: Terrain,
     ) -> None:
         """Make the controller.
 
@@ -56,11 +54,10 @@ class WholeBodyController(LeafSystem):
             parameters: tasks and limits.
             posture: joint angles [rad] by name around which arms and spine are held; 0 if not named.
             period: time between updates [s].
-            terrain: on which the body walks.
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
-        self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters, terrain)
+        self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters)
         self._period = period
         self._hold = parameters.hold
         joints, names = self._dynamics.joints, self._qp.names

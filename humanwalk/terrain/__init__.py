@@ -4,7 +4,7 @@ from humanwalk.terrain.course import PIECES, Course
 from humanwalk.terrain.face import Face
 from humanwalk.terrain.piece import Piece
 from humanwalk.terrain.plane import Plane
-from humanwalk.terrain.terrain import GroundProperties, Surface, Terrain, highest_along
+from humanwalk.terrain.terrain import Ground, GroundProperties, Surface, Terrain, highest_along
 
 TERRAINS: dict[str, type[Terrain]] = {"plane": Plane, "course": Course}
 """Terrains by their tag in a scenario."""
@@ -14,6 +14,7 @@ __all__ = [
     "TERRAINS",
     "Course",
     "Face",
+    "Ground",
     "GroundProperties",
     "Piece",
     "Plane",

@@ -109,6 +109,9 @@ class Course(Terrain):
     def face_at(self, xy: Array) -> Face:
         return self._map.face_at(xy)
 
+    def faces_near(self, xy: Array, distance: float) -> tuple[Face, ...]:
+        return self._map.faces_near(xy, distance)
+
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
         """Register one solid for each face and for the ground on each side, and a mesh for each color."""
         faces, beside = self._map.faces, self._map.beside

@@ -88,6 +88,11 @@ class FaceMap:
         """The face at a point xy [m], shape (2,), together with all faces before and behind it in the same plane."""
         return self._whole[int(self._index(xy))]
 
+    def faces_near(self, xy: Array, distance: float) -> tuple[Face, ...]:
+        """See `Ground.faces_near`; each face as `face_at` returns it, once."""
+        is_near = (self._lower <= xy + distance) & (self._upper >= xy - distance)
+        return tuple(dict.fromkeys(self._whole[i] for i in np.flatnonzero(is_near.all(axis=1))))
+
     def nearest(self, p_W: Array) -> Surface:
         """See `Terrain.nearest`; a point in the ground may be nearer to a wall, such as a riser, than to the top."""
         xy, z = p_W[:, :2], p_W[:, 2]

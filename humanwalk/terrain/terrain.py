@@ -1,6 +1,6 @@
-"""The protocol of all terrains: a surface z = height(x, y) with axes and friction, which adds its solids to a plant."""
+"""The protocols of the ground: a surface z = height(x, y) with axes and friction; a terrain also has solids."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import NamedTuple, Protocol
 
@@ -32,10 +32,31 @@ class Surface(NamedTuple):
     friction: Array
 
 
-class Terrain(Protocol):
-    """A surface fixed in the world W, with one height above every point xy of the plane z = 0.
+class Touch(NamedTuple):
+    """What a foot that should stand on the ground feels.
 
-    Plant, start posture, monitor, planner, whole-body program, foot forces and pictures take the ground from here.
+    Attributes:
+        foot: Index of its anchor.
+        heel: Middle of the heel's lower end in W [m], shape (3,).
+        forward, normal: Axes of the sole in W, shape (3,) each.
+        pressure: Center of pressure in W [m], shape (3,); None without load.
+        pressure_ahead: Distance of the center of pressure ahead of the ankle [m].
+        is_rolling: Whether the heel is to be up, so that the sole does not show the slope.
+    """
+
+    foot: int
+    heel: Array
+    forward: Array
+    normal: Array
+    pressure: Array | None
+    pressure_ahead: float
+    is_rolling: bool
+
+
+class Ground(Protocol):
+    """A surface with one height above every point xy of the plane z = 0, in W.
+
+    Planner and whole-body program take the ground from here; `walking/knowledge.py` has what they know of it.
     """
 
     def height(self, xy: Array) -> Array:
@@ -50,6 +71,26 @@ class Terrain(Protocol):
     def friction(self, xy: Array) -> Array:
         """Return the Coulomb coefficient between sole and ground at points xy [m]; shape (...) for (..., 2)."""
 
+    def face_at(self, xy: Array) -> Face:
+        """Return the face that contains a point xy [m], shape (2,); here the tangent plane, without end."""
+        n_x, n_y, n_z = self.axes(xy)[2].tolist()
+        gradient = (-n_x / n_z, -n_y / n_z)
+        intercept = float(self.height(xy)) - gradient[0] * float(xy[0]) - gradient[1] * float(xy[1])
+        end = (ENDLESS, ENDLESS)
+        return Face((-ENDLESS, -ENDLESS), end, intercept, gradient, float(self.friction(xy)), (0.86, 0.87, 0.86))
+
+    def faces_near(self, xy: Array, distance: float) -> tuple[Face, ...]:
+        """Return the faces that have a point within a distance of xy [m], shape (2,), along x and along y."""
+        return (self.face_at(xy),)
+
+    def felt(self, touches: Sequence[Touch], dt: float) -> "Ground":
+        """Return the ground corrected by what the feet feel within `dt` [s]; here itself, for it is exact."""
+        return self
+
+
+class Terrain(Ground, Protocol):
+    """A ground fixed in the world, with solids: plant, start posture, monitor, foot forces and pictures have it."""
+
     def add_to(self, plant: MultibodyPlant, properties: GroundProperties) -> None:
         """Register the geometry for contact and for pictures with a plant that is not finalized."""
 
@@ -59,30 +100,22 @@ class Terrain(Protocol):
         R_SW = self.axes(xy)
         return Surface((p_W[:, 2] - self.height(xy)) * R_SW[:, 2, 2], R_SW, self.friction(xy))
 
-    def face_at(self, xy: Array) -> Face:
-        """Return the face that contains a point xy [m], shape (2,); here the tangent plane, without end."""
-        n_x, n_y, n_z = self.axes(xy)[2].tolist()
-        gradient = (-n_x / n_z, -n_y / n_z)
-        intercept = float(self.height(xy)) - gradient[0] * float(xy[0]) - gradient[1] * float(xy[1])
-        end = (ENDLESS, ENDLESS)
-        return Face((-ENDLESS, -ENDLESS), end, intercept, gradient, float(self.friction(xy)), (0.86, 0.87, 0.86))
-
     @property
     def faces(self) -> tuple[Face, ...]:
         """Faces that a map of the ground shows in their colors; none where it is uniform."""
         return ()
 
 
-def height_at(terrain: Terrain, point: complex) -> float:
-    """Return the height [m] of a terrain at a point x + iy [m]."""
-    return float(terrain.height(np.array((point.real, point.imag))))
+def height_at(ground: Ground, point: complex) -> float:
+    """Return the height [m] of the ground at a point x + iy [m]."""
+    return float(ground.height(np.array((point.real, point.imag))))
 
 
-def highest_along(terrain: Terrain, path: Array, half_width: float) -> float:
-    """Return the greatest height [m] of a terrain under a strip, such as the one that a swinging foot crosses.
+def highest_along(ground: Ground, path: Array, half_width: float) -> float:
+    """Return the greatest height [m] of the ground under a strip, such as the one that a swinging foot crosses.
 
     Args:
-        terrain: The ground.
+        ground: The ground.
         path: Points of the middle line of the strip [m], shape (n, 2), n >= 2.
         half_width: Distance of the strip's edges from its middle line [m].
     """
@@ -94,4 +127,4 @@ def highest_along(terrain: Terrain, path: Array, half_width: float) -> float:
         c = np.linspace(-half_width, half_width, 2 + int(2.0 * half_width / SAMPLE_SPACING))
         normal = np.array((-along[1], along[0]))
         points.append((start + s[:, None, None] * along + c[:, None] * normal).reshape(-1, 2))
-    return float(terrain.height(np.concatenate(points)).max())
+    return float(ground.height(np.concatenate(points)).max())

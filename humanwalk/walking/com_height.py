@@ -10,6 +10,9 @@ FREE_REACH = 0.4
 """Forward distance of a foothold from the center of mass that is reached without lowering it [m]: the feet roll over
 heel and ball."""
 
+HEEL_RISE = 0.03
+"""Length that a leg gains when its heel rises [m] (our choice)."""
+
 FREE_SPREAD = 0.1
 """The same sideways [m]: about half the distance of the hips."""
 
@@ -52,6 +55,18 @@ class ComHeight:
         forward = max(abs(reach.real) - FREE_REACH, 0.0)
         sideways = max(abs(reach.imag) - FREE_SPREAD, 0.0)
         return standing - leg + math.sqrt(max(leg**2 - forward**2 - sideways**2, 0.0))
+
+    def max_for_step(self, rise: float, standing: float) -> float:
+        """Largest height of the center of mass above the support [m] in a step up or down.
+
+        At touchdown the support is half-way between the feet: the leg behind, or the one ahead in a step down, is
+        longer by half of the rise.
+
+        Args:
+            rise: Height of the next foothold above the stance foot [m].
+            standing: Height of the center of mass with straight legs [m].
+        """
+        return standing + HEEL_RISE - 0.5 * abs(rise)
 
     def approach(self, height: float, rate: float, goal: float, max_height: float) -> float:
         """Acceleration of the mean height [m/s2], critically damped.

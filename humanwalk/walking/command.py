@@ -24,6 +24,10 @@ class Command:
         """Forward + i sideways [m/s]."""
         return complex(self.forward, self.sideways)
 
+    def at_pace(self, pace: float) -> "Command":
+        """The command with another forward speed, relative to this one."""
+        return replace(self, forward=pace * self.forward)
+
 
 @dataclass(frozen=True)
 class CommandPoint:

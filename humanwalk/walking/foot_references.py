@@ -1,7 +1,10 @@
 """References of the feet: the stance foot, the foot behind in double support, and the swinging foot."""
 
+from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import wrapped
+from humanwalk.terrain.face import surface_axes
 from humanwalk.walking.command import Command
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -22,14 +25,14 @@ def rollover_speed(state: PlannerState, step: complex, command: Command, paramet
     A foot that is steep when it leaves the ground below the body catches the ground with its toes.
     """
     length = (step / state.direction).real
-    return min(command.forward, SHORT_STEP * length / parameters.timing.step)
+    return min(command.forward, SHORT_STEP * length / state.timing.step)
 
 
 def stance_rollover_speed(
     state: PlannerState, swing: Swing, command: Command, parameters: StepPlannerParameters
 ) -> float | None:
     """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
-    timing, rockers = parameters.timing, parameters.rockers
+    timing, rockers = state.timing, parameters.rockers
     speed = rollover_speed(state, swing.foothold.position - state.stance_foot.position, command, parameters)
     return speed if state.elapsed > timing.step - rockers.ball and rockers.heel_rises(speed) else None
 
@@ -38,43 +41,53 @@ def stance_foot(
     state: PlannerState, swing: Swing | None, command: Command, parameters: StepPlannerParameters
 ) -> FootReference:
     """Reference of the stance foot; `swing` is the swinging foot in single support."""
-    timing, rockers = parameters.timing, parameters.rockers
+    timing, rockers = state.timing, parameters.rockers
+    R_WS = state.stance_foot.R_WS
     if state.steps > 0 and state.elapsed < rockers.heel:
-        return rockers.over_heel(state.heading)
+        return rockers.over_heel(state.heading, R_WS)
     speed = stance_rollover_speed(state, swing, command, parameters) if swing is not None else None
     if speed is None:
-        return FootReference(FootTask.FLAT, 1.0, state.heading)
+        return FootReference(FootTask.FLAT, 1.0, state.heading, R_WS)
     since = state.elapsed - (timing.step - rockers.ball)
-    return rockers.over_ball(since, timing.double_support, 1.0, state.heading, speed)
+    return rockers.over_ball(since, timing.double_support, 1.0, state.heading, R_WS, speed)
 
 
 def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
     """Reference of the foot that leaves the ground at the end of double support."""
-    timing, rockers = parameters.timing, parameters.rockers
-    load = max(1.0 - state.elapsed / timing.double_support, 0.0)
+    timing, rockers = state.timing, parameters.rockers
+    load, R_WS = max(1.0 - state.elapsed / timing.double_support, 0.0), state.old_foot.R_WS
     speed = rollover_speed(state, state.stance_foot.position - state.old_foot.position, command, parameters)
     if not rockers.heel_rises(speed):
-        return FootReference(FootTask.FLAT, load, state.old_heading)
-    return rockers.over_ball(rockers.ball + state.elapsed, timing.double_support, load, state.old_heading, speed)
+        return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
+    return rockers.over_ball(rockers.ball + state.elapsed, timing.double_support, load, state.old_heading, R_WS, speed)
 
 
 def swinging_foot(
     state: PlannerState, swing: Swing, phase_rate: float, parameters: StepPlannerParameters
 ) -> FootReference:
     """Reference of the swinging foot at a rate of the clock."""
-    timing = parameters.timing
+    timing = state.timing
     progress = timing.swing_progress(state.elapsed)
     progress_rate = phase_rate / timing.single_support
     height, pitch = swing.profile.at(progress)
-    rise = blend(0.0, swing.foothold.ground - state.old_foot.ground, progress, 1.0)
+    rise = blend(0.0, swing.rise, progress, 1.0).plus(swing.clearance.at(progress))
     toes = blend(swing.start_toes, 0.0, progress, TOES_STRAIGHT).time_scaled(progress_rate)
     turn = wrapped(state.heading + state.turn * timing.step - swing.start_yaw)
     return FootReference(
         FootTask.SWING,
         load=0.0,
         yaw=swing.start_yaw + blend(0.0, turn, progress, 1.0).value,
+        R_WS=_turned(state.old_foot, swing.foothold, progress),
         position=swing.motion,
         height=height.plus(rise).time_scaled(progress_rate),
         pitch=pitch.time_scaled(progress_rate),
         toes=toes[:2],
     )
+
+
+def _turned(start: Foothold, goal: Foothold, progress: float) -> Array:
+    """R_WS of the foot's axes on the way from one face to another: their normals are interpolated."""
+    if start.face.gradient == goal.face.gradient:
+        return goal.R_WS
+    s = blend(0.0, 1.0, progress, 1.0).value
+    return surface_axes((1.0 - s) * start.R_WS[:, 2] + s * goal.R_WS[:, 2]).T

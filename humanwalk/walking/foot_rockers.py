@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.motions import ScalarMotion
@@ -31,11 +32,13 @@ class FootRockers:
         """Whether there is a heel-off at a forward speed [m/s]."""
         return speed > self.min_speed
 
-    def over_heel(self, yaw: float) -> FootReference:
-        """Reference of a foot that has just landed."""
-        return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw)
+    def over_heel(self, yaw: float, R_WS: Array) -> FootReference:
+        """Reference of a foot that has just landed on ground with the axes R_WS."""
+        return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS)
 
-    def over_ball(self, since: float, double_support: float, load: float, yaw: float, speed: float) -> FootReference:
+    def over_ball(
+        self, since: float, double_support: float, load: float, yaw: float, R_WS: Array, speed: float
+    ) -> FootReference:
         """Reference of a foot after heel-off.
 
         Args:
@@ -43,10 +46,11 @@ class FootRockers:
             double_support: Time from the other foot's touchdown to toe-off [s].
             load: See FootReference.
             yaw: Yaw of the foot [rad].
+            R_WS: Axes of the ground under the foot.
             speed: Forward speed [m/s].
         """
         duration = self.ball + double_support
         final = self.pitch * clip(speed / FULL_PITCH_SPEED, 0.0, 1.0)
         s = min(since / duration, 1.0)
         pitch = ScalarMotion(final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)
-        return FootReference(FootTask.HEEL_OFF, load, yaw, pitch=pitch, toes=pitch[:2])
+        return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=pitch[:2])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from humanwalk.numerics.scalars import clip, quintic_blend
@@ -31,6 +33,48 @@ def blend(start: float, end: float, time: float, duration: float) -> ScalarMotio
     s, slope, curvature = quintic_blend(clip(time / duration, 0.0, 1.0))
     change = end - start
     return ScalarMotion(start + change * s, change * slope / duration, change * curvature / duration**2)
+
+
+class Cubic(NamedTuple):
+    """a + b s + c s^2 + d s^3."""
+
+    a: float
+    b: float
+    c: float
+    d: float
+
+    def at(self, s: float) -> ScalarMotion:
+        """Value and the first two derivatives by s."""
+        a, b, c, d = self
+        return ScalarMotion(a + s * (b + s * (c + s * d)), b + s * (2.0 * c + 3.0 * d * s), 2.0 * c + 6.0 * d * s)
+
+
+class PiecewiseCubic(NamedTuple):
+    """Cubics over equal parts of a progress from 0 to 1."""
+
+    pieces: tuple[Cubic, ...]
+
+    @staticmethod
+    def through(values: Sequence[float]) -> PiecewiseCubic:
+        """The monotone spline through values at equal distances, at rest at both ends.
+
+        Between two values it stays between them (Fritsch and Butland 1984: harmonic means of the slopes on both sides).
+        """
+        slopes = [after - before for before, after in pairwise(values)]
+        tangents = [0.0, *(2.0 * a * b / (a + b) if a * b > 0.0 else 0.0 for a, b in pairwise(slopes)), 0.0]
+        return PiecewiseCubic(
+            tuple(
+                Cubic(a, m, 3.0 * (b - a) - 2.0 * m - n, 2.0 * (a - b) + m + n)
+                for (a, b), (m, n) in zip(pairwise(values), pairwise(tangents), strict=True)
+            )
+        )
+
+    def at(self, progress: float) -> ScalarMotion:
+        """Value and the derivatives by the progress, which is clipped to [0, 1]."""
+        n = len(self.pieces)
+        s = clip(progress, 0.0, 1.0) * n
+        i = min(int(s), n - 1)
+        return self.pieces[i].at(s - i).time_scaled(n)
 
 
 class PlanarMotion(NamedTuple):

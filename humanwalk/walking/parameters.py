@@ -9,7 +9,10 @@ from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.counter_rotation import CounterRotation
 from humanwalk.walking.foot_placement import StepPlacement
 from humanwalk.walking.foot_rockers import FootRockers
+from humanwalk.walking.footholds import FootholdSearch
+from humanwalk.walking.preview import Pacing
 from humanwalk.walking.step_timing import StepTiming
+from humanwalk.walking.swing_clearance import ClearanceParameters
 from humanwalk.walking.swing_foot import SwingParameters
 
 
@@ -19,9 +22,12 @@ class StepPlannerParameters:
 
     timing: StepTiming = StepTiming()
     placement: StepPlacement = StepPlacement()
+    footholds: FootholdSearch = FootholdSearch()
+    pacing: Pacing = Pacing()
     support: BaseOfSupport = BaseOfSupport()
     rockers: FootRockers = FootRockers()
     swing: SwingParameters = SwingParameters()
+    clearance: ClearanceParameters = ClearanceParameters()
     height: ComHeight = ComHeight()
     path: PathFollowing = PathFollowing()
     rotation: CounterRotation = CounterRotation()

@@ -5,16 +5,19 @@ STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPP
 
 from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
-from humanwalk.terrain.terrain import Terrain
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
+from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import BodyState, Phase
+from humanwalk.walking.zmp_reference import desired_gait
 
 STOP_SPEED = 0.05
 """Commanded speed [m/s] and turn rate [rad/s] up to which a step is the last one."""
@@ -24,26 +27,33 @@ class PhaseTransitions:
     """Transitions between the phases; the arguments are those of `StepPlanner`."""
 
     def __init__(
-        self, parameters: StepPlannerParameters, ankle_height: float, first_swing: Side, terrain: Terrain
+        self,
+        parameters: StepPlannerParameters,
+        ankle_height: float,
+        first_swing: Side,
+        ground: Ground,
+        footholds: FootholdPlanner,
     ) -> None:
         self._parameters, self._ankle_height = parameters, ankle_height
-        self._first_swing, self._terrain = first_swing, terrain
+        self._first_swing, self._ground, self._footholds = first_swing, ground, footholds
 
     def start(self, body: BodyState, heading: float) -> PlannerState:
         """Standing on both feet, at the start of a path along a heading [rad]."""
-        right, left = (Foothold.on(self._terrain, foot.position) for foot in (body.right, body.left))
-        ground = 0.5 * (right.ground + left.ground)
+        right, left = (Foothold.on(self._ground, foot.position) for foot in (body.right, body.left))
+        support = 0.5 * (right.ground + left.ground)
         return PlannerState(
             phase=Phase.STAND,
             elapsed=0.0,
             stance=other_side(self._first_swing),
             right=right,
             left=left,
-            support_start=ground,
+            support=support,
             heading=heading,
             old_heading=heading,
             path=CommandedPath.begin(0.5 * (right.position + left.position), heading),
-            height=body.com_height - ground,
+            height=body.com_height - support,
+            timing=self._parameters.timing,
+            ground=self._ground,
         )
 
     def advance(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
@@ -51,14 +61,14 @@ class PhaseTransitions:
         return self._reanchor_airborne_stance(self._transition(state, body, command), body)
 
     def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
-        timing = self._parameters.timing
+        timing = state.timing
         is_moving = max(abs(command.velocity), abs(command.turn)) > STOP_SPEED
         if state.phase is Phase.STAND and is_moving:
-            ground = state.support_ground(timing).value
-            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, support_start=ground)
+            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
             # The weight shift takes the place of the first double support.
-            return self._lift_off(state._replace(elapsed=timing.double_support), body, command)
+            stepping = self._look_ahead(state._replace(elapsed=timing.double_support), command)
+            return self._lift_off(stepping._replace(elapsed=stepping.timing.double_support), body, command)
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
             return self._lift_off(state, body, command)
         if state.phase is Phase.SINGLE_SUPPORT and timing.has_landed(state.elapsed, body.foot(state.swing_side).force):
@@ -68,18 +78,20 @@ class PhaseTransitions:
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
-        foot = body.foot(state.swing_side)
-        flat_height, toe_up = state.old_foot.ground + self._ankle_height, swing.touchdown_pitch(command.forward)
-        profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, self._parameters.timing.single_support, swing)
+        command = command.at_pace(state.preview.pace)
+        foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
+        flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
+        toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
+        profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
         return state._replace(
             phase=Phase.SINGLE_SUPPORT,
-            support_start=state.stance_foot.ground,
             swing=Swing(
                 motion=PlanarMotion(foot.position, foot.velocity, acceleration),
                 profile=profile,
-                foothold=Foothold(foot.position, state.old_foot.ground),
+                foothold=Foothold(foot.position, state.old_foot.ground, state.old_foot.face),
                 start_yaw=foot.yaw,
+                start=foot.position,
                 start_toes=foot_behind(state, command, self._parameters).toes[0],
             ),
         )
@@ -90,18 +102,18 @@ class PhaseTransitions:
         Both feet are set to their measured positions, so that errors do not accumulate. Heading and turn rate are those
         of the path beside the new stance foot.
         """
-        right, left = (Foothold.on(self._terrain, foot.position) for foot in (body.right, body.left))
+        right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
         beside_foot = path.nearest(body.foot(state.swing_side).position, command)
-        return PlannerState(
+        landed = PlannerState(
             phase=Phase.DOUBLE_SUPPORT if is_moving else Phase.STAND,
             elapsed=0.0,
             stance=state.swing_side,
             right=right,
             left=left,
-            support_start=state.stance_foot.ground,
+            support=state.support,
             heading=beside_foot.heading,
             old_heading=state.heading,
             path=path,
@@ -110,7 +122,28 @@ class PhaseTransitions:
             height=state.height,
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_moving else 0,
+            timing=self._parameters.timing,
+            ground=state.ground,
         )
+        return self._look_ahead(landed, command) if is_moving else landed
+
+    def _look_ahead(self, state: PlannerState, command: Command) -> PlannerState:
+        """The state with the next footholds, and with duration and speed of the step that suit them."""
+        gait = desired_gait(state, command, self._parameters)
+        preview = self._footholds.preview(state.ground, state.stance_foot, state.stance, state.heading, gait)
+        rise = preview.footholds[0].ground - state.old_foot.ground
+        factor = self._parameters.pacing.duration_factor(rise)
+        if factor == 1.0 and preview.pace == 1.0:
+            return state._replace(preview=preview)
+        pace = preview.pace / factor
+        slower = state._replace(
+            timing=state.timing.stretched(factor),
+            path_correction=complex(pace * state.path_correction.real, state.path_correction.imag),
+            preview=preview._replace(pace=pace),
+        )
+        other = desired_gait(slower, command.at_pace(pace), self._parameters)
+        moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
+        return slower._replace(preview=moved)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""
@@ -118,5 +151,5 @@ class PhaseTransitions:
         is_landing = state.steps > 0 and 0.0 < state.elapsed <= self._parameters.rockers.heel
         if foot.force >= TOUCHDOWN_FORCE or not is_landing:
             return state
-        foothold = Foothold.on(self._terrain, foot.position)
+        foothold = Foothold.on(state.ground, foot.position)
         return state._replace(right=foothold) if state.stance == "Right" else state._replace(left=foothold)

@@ -8,24 +8,16 @@ from typing import NamedTuple
 
 from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
-from humanwalk.terrain.terrain import Terrain, height_at
+from humanwalk.terrain.plane import Plane
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.commanded_path import CommandedPath
-from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
+from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.motions import PlanarMotion
+from humanwalk.walking.preview import Preview
 from humanwalk.walking.step_timing import StepTiming
+from humanwalk.walking.swing_clearance import Clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import Phase
-
-
-class Foothold(NamedTuple):
-    """Where a foot stands: its ankle over the level plane, and the height of the ground below it [m]."""
-
-    position: complex
-    ground: float
-
-    @staticmethod
-    def on(terrain: Terrain, position: complex) -> "Foothold":
-        """The foothold at a position."""
-        return Foothold(position, height_at(terrain, position))
 
 
 class Swing(NamedTuple):
@@ -36,6 +28,9 @@ class Swing(NamedTuple):
         profile: Height and pitch for a foothold at the height of the ground at lift-off.
         foothold: Where the foot will stand.
         start_yaw, start_toes: Yaw of the foot and extension of the toes at lift-off [rad].
+        start: Ankle over the level plane at lift-off [m].
+        rise: Height of the ground at the foothold above that at lift-off [m].
+        clearance: What the swing adds to clear the ground.
     """
 
     motion: PlanarMotion
@@ -43,6 +38,9 @@ class Swing(NamedTuple):
     foothold: Foothold
     start_yaw: float
     start_toes: float
+    start: complex = 0.0
+    rise: float = 0.0
+    clearance: Clearance = Clearance()
 
 
 class PlannerState(NamedTuple):
@@ -53,14 +51,17 @@ class PlannerState(NamedTuple):
         elapsed: Time in the phase; in double and single support, on the clock of the step [s].
         stance: The stance foot of the step.
         right, left: Where the feet stand; the swinging foot, where it stood.
-        support_start: Height of the ground under the support at the start of the phase [m].
+        support: Height of the support: that of the center of mass, without what it has above level ground [m].
         heading, old_heading: Headings of this step and of the one before [rad].
         path: The commanded path.
-        height, height_rate: Mean height of the center of mass above the ground under the support [m, m/s].
+        height, height_rate: Mean height of the center of mass above the support [m, m/s].
         turn: Turn rate of the path beside the stance foot [rad/s].
         path_correction: Velocity of this step in addition to the commanded one [m/s].
         steps: Number of steps since standing.
         swing: The swinging foot in single support, else None.
+        timing: Durations of this step.
+        preview: The next footholds.
+        ground: What is known of the ground.
     """
 
     phase: Phase
@@ -68,7 +69,7 @@ class PlannerState(NamedTuple):
     stance: Side
     right: Foothold
     left: Foothold
-    support_start: float
+    support: float
     heading: float
     old_heading: float
     path: CommandedPath
@@ -78,6 +79,9 @@ class PlannerState(NamedTuple):
     path_correction: complex = 0.0
     steps: int = 0
     swing: Swing | None = None
+    timing: StepTiming = StepTiming()
+    preview: Preview = Preview()
+    ground: Ground = Plane()
 
     def __deepcopy__(self, memo: object) -> "PlannerState":
         """Return itself: Drake copies abstract values often, and the state is immutable."""
@@ -124,15 +128,3 @@ class PlannerState(NamedTuple):
     def world(self, point: complex) -> complex:
         """A point of the frame of the step in W."""
         return self.stance_foot.position + self.direction * point
-
-    def support_ground(self, timing: StepTiming) -> ScalarMotion:
-        """Height of the ground under the support [m].
-
-        It moves from its value at the start of the phase to the ground under the stance foot, or to the mean of both
-        feet in standing.
-        """
-        goal = self.stance_foot.ground
-        if self.phase is Phase.STAND:
-            goal = 0.5 * (self.right.ground + self.left.ground)
-        duration = timing.weight_shift if self.phase is Phase.WEIGHT_SHIFT else timing.double_support
-        return blend(self.support_start, goal, self.elapsed, duration)

@@ -8,19 +8,26 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 """
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 from humanwalk.body import SIDES, Side
-from humanwalk.terrain.terrain import Terrain
+from humanwalk.body.contact import SoleExtent
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
 from humanwalk.walking.foot_placement import FILTER_TIME, FREEZE_TIME, foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import PhaseTransitions
-from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
+from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.preview import FootholdPlanner, dcm_shift
+from humanwalk.walking.support import SupportMotion, support_motion
+from humanwalk.walking.swing_clearance import clearance
+from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
 
@@ -43,7 +50,8 @@ class StepPlanner:
         leg_length: Distance of hip and ankle of a straight leg [m].
         first_swing: The foot of the first step.
         period: Control period [s].
-        terrain: The ground.
+        sole: Extent of a sole.
+        ground: What is known of the ground.
     """
 
     def __init__(
@@ -54,13 +62,21 @@ class StepPlanner:
         leg_length: float,
         first_swing: Side,
         period: float,
-        terrain: Terrain,
+        sole: SoleExtent,
+        ground: Ground,
     ) -> None:
         self.parameters = parameters
         self.frequency = natural_frequency(parameters.height.walking * standing_com_height)
         self._standing_com_height, self._leg_length = standing_com_height, leg_length
-        self._period, self._terrain = period, terrain
-        self._phases = PhaseTransitions(parameters, ankle_height, first_swing, terrain)
+        self._period, self._sole, self._ankle_height = period, sole, ankle_height
+        self._footholds = FootholdPlanner(
+            sole,
+            parameters.footholds,
+            parameters.placement,
+            parameters.pacing,
+            parameters.height.walking * standing_com_height,
+        )
+        self._phases = PhaseTransitions(parameters, ankle_height, first_swing, ground, self._footholds)
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
         """The state in standing; the commanded path begins along a heading [rad]."""
@@ -69,16 +85,24 @@ class StepPlanner:
     def update(self, state: PlannerState, body: BodyState, command: Command) -> tuple[PlannerState, WalkingReference]:
         """One control period: the next state, and the reference for the period."""
         dcm = divergent_component(body.com, body.com_velocity, self.frequency)
-        state = self._phases.advance(state, body, command)
+        state = self._phases.advance(self._feel(state, body), body, command)
         plan = self._step if state.is_stepping else self._stand
         next_state, reference = plan(state, body, command, dcm)
         return next_state._replace(path=state.path.advanced(command, self._period)), reference
+
+    def _feel(self, state: PlannerState, body: BodyState) -> PlannerState:
+        """The state with what the feet feel of the ground."""
+        ground = state.ground.felt(touches(state, body, self.parameters, self._sole, self._ankle_height), self._period)
+        if ground is state.ground:
+            return state
+        feet = {side: Foothold.on(ground, state.foot(side).position) for side in standing_feet(state)}
+        return state._replace(ground=ground, right=feet.get("Right", state.right), left=feet.get("Left", state.left))
 
     def _stand(
         self, state: PlannerState, body: BodyState, command: Command, dcm: complex
     ) -> tuple[PlannerState, WalkingReference]:
         """Hold the DCM between the feet, or move it to where the first step begins."""
-        p, timing = self.parameters, self.parameters.timing
+        p, timing = self.parameters, state.timing
         dcm_reference, dcm_rate = p.support.center_of(state.midpoint, state.heading), 0j
         if state.phase is Phase.WEIGHT_SHIFT:
             gait = desired_gait(state, command, p)
@@ -89,20 +113,25 @@ class StepPlanner:
             dcm_reference, dcm_rate = dcm_reference + s.value * change, s.rate * change
         zmp = dcm_reference - dcm_rate / self.frequency + (1.0 + p.dcm_gain) * (dcm - dcm_reference)
         balance = Balance(self._clamp(state, zmp), dcm, dcm_reference)
-        feet: dict[Side, FootReference] = {side: FootReference(FootTask.FLAT, 1.0, state.heading) for side in SIDES}
-        next_state, com_height = self._com_height(state, 0.0, math.inf)
+        feet: dict[Side, FootReference] = {
+            side: FootReference(FootTask.FLAT, 1.0, state.heading, state.foot(side).R_WS) for side in SIDES
+        }
+        support = support_motion(state, 0.0, self.frequency)
+        next_state, com_height = self._com_height(state, 0.0, math.inf, support)
         next_state = next_state._replace(elapsed=state.elapsed + self._period)
-        return next_state, self._reference(state, body, balance, com_height, feet, state.midpoint)
+        return next_state, self._reference(state, body, balance, com_height, support, feet, state.midpoint)
 
     def _step(
         self, state: PlannerState, body: BodyState, command: Command, dcm: complex
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
-        p, timing, placement = self.parameters, self.parameters.timing, self.parameters.placement
+        p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
+        command = command.at_pace(preview.pace)
         gait = desired_gait(state, command, p)
 
-        # Nominal DCM: backward from its periodic value at the end of the step.
+        # Nominal DCM: backward from its value at the end of the step, that of the periodic gait on the next footholds.
         end = state.world(p.support.center + gait.end_offsets(self.frequency).on(state.stance))
+        end += dcm_shift(preview.moves, gait, self.frequency)
         segments = remaining_zmp(state, gait, p)
         dcm_reference = backward(segments, end, self.frequency)
 
@@ -113,14 +142,20 @@ class StepPlanner:
 
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
-        desired = gait.displacement.on(state.stance) + foothold_gain(self.frequency, timing.double_support) * error
+        desired = gait.displacement.on(state.stance) + preview.first_move / state.direction
+        desired += foothold_gain(self.frequency, timing.double_support) * error
+
+        heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
+        rises = tuple(after - before for before, after in pairwise(heights))
+        support = support_motion(state, dcm_shift(rises, gait, self.frequency).real, self.frequency)
+        max_com_height = p.height.max_for_step(rises[0] if rises else 0.0, self._standing_com_height)
 
         # Clock of the step and swinging foot: a foothold out of reach makes the clock run faster.
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
         if swing is None:
             excess = placement.crossover_distance(desired, state.stance, foot)
             phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit)
-            foothold, max_com_height = state.old_foot, math.inf
+            foothold = state.old_foot
             other_foot = foot_behind(state, command, p)
         else:
             reachable, excess = placement.within_reach(desired, state.stance, foot)
@@ -129,28 +164,44 @@ class StepPlanner:
             com = com_after(remaining, body.com, dcm, zmp, self.frequency)
             goal = state.world(placement.near_com(reachable, state.local(com)))
             swing = self._advance_swing(state, swing, goal, remaining, command)
-            foothold, max_com_height = swing.foothold, self._max_com_height(state, swing.foothold, com)
+            foothold = swing.foothold
+            max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
             other_foot = swinging_foot(state, swing, phase_rate, p)
 
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
-        next_state, com_height = self._com_height(state, command.forward, max_com_height)
+        next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
         next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)
         balance = Balance(zmp, dcm, dcm_reference)
-        return next_state, self._reference(state, body, balance, com_height, feet, foothold.position)
+        return next_state, self._reference(state, body, balance, com_height, support, feet, foothold.position)
 
     def _advance_swing(
         self, state: PlannerState, swing: Swing, goal: complex, remaining: float, command: Command
     ) -> Swing:
         """The swinging foot one control period later, on its way to a foothold [m] for the remaining time [s]."""
-        timing, placement, law = self.parameters.timing, self.parameters.placement, self.parameters.swing
-        foothold = swing.foothold
+        timing, placement, law = state.timing, self.parameters.placement, self.parameters.swing
+        foothold, rise, added = swing.foothold, swing.rise, swing.clearance
         if timing.step - state.elapsed > FREEZE_TIME:
             is_first = state.elapsed - timing.double_support < 0.5 * self._period
             smoothing = 1.0 if is_first else self._period / (self._period + FILTER_TIME)
-            filtered = foothold.position + smoothing * (goal - foothold.position)
-            foothold = Foothold.on(self._terrain, filtered)
-        landing = law.landing(foothold.position, command.velocity * state.direction)
-        motion = swing.motion.towards(landing, remaining, self._period)
+            yaw = state.heading + state.turn * timing.step
+            place = self._footholds.nearest(
+                state.ground, goal, yaw, state.stance_foot, state.stance, state.direction, swing.foothold.face
+            )
+            desired = clearance(state.ground, state.old_foot, place, yaw, self._sole, self.parameters.clearance)
+            added = added.filtered(desired, smoothing)
+            position = foothold.position + smoothing * (place.position - foothold.position)
+            rise += smoothing * (place.ground - state.old_foot.ground - rise)
+            foothold = place._replace(position=position)
+        progress = timing.swing_progress(state.elapsed)
+        rate = (1.0 - progress) / max(remaining, 1e-6)
+        if progress < added.depart:
+            start = PlanarMotion(swing.start)
+            motion = swing.motion.towards(start, (added.depart - progress) / max(rate, 1e-6), self._period)
+        else:
+            landing = law.landing(foothold.position, command.velocity * state.direction)
+            if added.arrive < 1.0:
+                landing = PlanarMotion(foothold.position)
+            motion = swing.motion.towards(landing, remaining - (1.0 - added.arrive) / max(rate, 1e-6), self._period)
         waypoint = placement.passing_waypoint(
             state.local(swing.motion.position), state.local(foothold.position), state.stance
         )
@@ -158,37 +209,48 @@ class StepPlanner:
             point, fraction = waypoint
             passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, self._period)
             motion = motion.with_sideways_of(passing, state.direction)
-        return swing._replace(motion=motion, foothold=foothold)
+        return swing._replace(motion=motion, foothold=foothold, rise=rise, clearance=added)
 
     def _clamp(self, state: PlannerState, zmp: complex, heel_is_up: bool = False) -> complex:
         """The zero-moment point, limited to the base of support."""
         old = None if state.phase is Phase.SINGLE_SUPPORT else state.old_foot.position
         return self.parameters.support.clamp(zmp, state.stance_foot.position, state.heading, old, heel_is_up)
 
-    def _max_com_height(self, state: PlannerState, foothold: Foothold, com: complex) -> float:
-        """Largest height above the ground under the stance foot from which a foothold is within reach [m]."""
+    def _max_com_height(self, state: PlannerState, foothold: Foothold, com: complex, support: float) -> float:
+        """Largest height above the support [m] from which a foothold is within reach at touchdown.
+
+        Args:
+            state: State of the planner.
+            foothold: The foothold.
+            com, support: Center of mass and height of the support at touchdown [m].
+        """
         reach = (foothold.position - com) / state.direction
         height = self.parameters.height.max_com_height_for_reach(reach, self._leg_length, self._standing_com_height)
-        return height + foothold.ground - state.stance_foot.ground
+        return height + foothold.ground - support
 
     def _com_height(
-        self, state: PlannerState, forward_speed: float, max_height: float
+        self, state: PlannerState, forward_speed: float, max_height: float, support: SupportMotion
     ) -> tuple[PlannerState, ScalarMotion]:
-        """The state with its mean height one period later, and the reference of the center of mass in W.
+        """The state with support and mean height one period later, and the reference of the center of mass in W.
 
-        The reference is the sum of the ground under the support, the mean height and the arc over the stance leg.
+        The reference is the sum of the height of the support, the mean height and the arc over the stance leg.
         """
-        law, timing = self.parameters.height, self.parameters.timing
+        law, period = self.parameters.height, self._period
         if state.phase is Phase.STAND:
             goal = law.standing * self._standing_com_height
         else:
             goal = law.walking * self._standing_com_height - law.arc_amplitude(forward_speed)
         acceleration = law.approach(state.height, state.height_rate, goal, max_height)
         mean = ScalarMotion(state.height, state.height_rate, acceleration)
-        rate = state.height_rate + self._period * acceleration
-        next_state = state._replace(height=state.height + self._period * rate, height_rate=rate)
-        arc = law.arc(state.elapsed, timing.step, forward_speed)
-        return next_state, state.support_ground(timing).plus(mean).plus(arc)
+        rate = state.height_rate + period * acceleration
+        moved = support.motion
+        next_state = state._replace(
+            height=state.height + period * rate,
+            height_rate=rate,
+            support=moved.value + period * (moved.rate + 0.5 * period * moved.acceleration),
+        )
+        arc = law.arc(state.elapsed, state.timing.step, forward_speed)
+        return next_state, moved.plus(mean).plus(arc)
 
     def _reference(
         self,
@@ -196,11 +258,12 @@ class StepPlanner:
         body: BodyState,
         balance: Balance,
         com_height: ScalarMotion,
+        support: SupportMotion,
         feet: dict[Side, FootReference],
         foothold: complex,
     ) -> WalkingReference:
         """The reference, with pelvis, chest and arms that rotate with the legs."""
-        rotation, timing = self.parameters.rotation, self.parameters.timing
+        rotation, timing = self.parameters.rotation, state.timing
         lead, lead_rate = foot_lead(body, state.heading)
         arm, arm_rate = rotation.arms * lead, rotation.arms * lead_rate
         # The trunk turns at the rate of the path, the headings of the steps by one step's turn at touchdown.
@@ -213,11 +276,13 @@ class StepPlanner:
             dcm=balance.dcm,
             dcm_reference=balance.dcm_reference,
             com_height=com_height,
-            ground_height=state.support_ground(timing).value,
+            ground_height=support.ground,
             right=feet["Right"],
             left=feet["Left"],
             pelvis_yaw=facing - rotation.pelvis * lead,
             chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((arm, arm_rate), (-arm, -arm_rate)),
             foothold=foothold,
+            step_duration=timing.step,
+            ground=state.ground,
         )

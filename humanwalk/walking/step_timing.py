@@ -1,6 +1,6 @@
 """The clock of a step: double support, then single support; it runs faster for a foothold that is out of reach."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from humanwalk.quantity import quantity
 
@@ -32,6 +32,12 @@ class StepTiming:
 
     double_support_rate_limit: float = quantity(3.0, "", 0.0, 10.0)
     """Largest increase of the rate in double support, where a foothold across the stance foot calls for it."""
+
+    def stretched(self, factor: float) -> "StepTiming":
+        """The timing of a step that takes `factor` times as long."""
+        if factor == 1.0:
+            return self
+        return replace(self, step=factor * self.step, double_support=factor * self.double_support)
 
     @property
     def single_support(self) -> float:

@@ -1,14 +1,13 @@
 """Trajectory of the swinging foot: over the level plane to a foothold that may move; height and pitch by splines."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
-from humanwalk.walking.motions import PlanarMotion, ScalarMotion
+from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
 HEIGHT_SHAPE = (1.0, 0.6, 0.27)
@@ -24,6 +23,10 @@ MAX_PITCH_SPEED = 1.7
 
 LANDING_DEPTH = 0.003
 """Depth below the ground at which the trajectory ends [m], so that the swing ends by contact."""
+
+
+FLAT_RISE = 0.1
+"""Height of a step from which on the foot lands flat [m]; on stairs people land on the ball or the whole sole."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,10 @@ class SwingParameters:
     landing_deceleration: float = quantity(22.0, "1/s", 0.0, 50.0)
     """Horizontal deceleration at touchdown, per speed of the walk."""
 
+    def rolling_share(self, rise: float) -> float:
+        """Share of the touchdown pitch for a step onto ground that is `rise` [m] above the plane of the stance foot."""
+        return max(1.0 - abs(rise) / FLAT_RISE, 0.0)
+
     def touchdown_pitch(self, speed: float) -> float:
         """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
         return self.toe_up * clip(speed, 0.0, MAX_PITCH_SPEED)
@@ -62,20 +69,6 @@ class SwingParameters:
     def landing(self, foothold: complex, velocity: complex) -> PlanarMotion:
         """Horizontal motion at touchdown for a velocity of the walk [m/s]."""
         return PlanarMotion(foothold, self.landing_speed_ratio * velocity, -self.landing_deceleration * velocity)
-
-
-class Cubic(NamedTuple):
-    """a + b s + c s^2 + d s^3."""
-
-    a: float
-    b: float
-    c: float
-    d: float
-
-    def at(self, s: float) -> ScalarMotion:
-        """Value and the first two derivatives by s."""
-        a, b, c, d = self
-        return ScalarMotion(a + s * (b + s * (c + s * d)), b + s * (2.0 * c + 3.0 * d * s), 2.0 * c + 6.0 * d * s)
 
 
 @dataclass(frozen=True)

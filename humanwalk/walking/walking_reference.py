@@ -6,7 +6,7 @@ origin at the ankle, and the axes of W when the foot stands flat and faces +x.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Self
 
@@ -16,10 +16,17 @@ from humanwalk.body import Side
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import GRAVITY
-from humanwalk.terrain.terrain import Terrain
+from humanwalk.terrain.plane import Plane
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion
 
 Vector = Sequence[float]
+
+FORCE_Z = 2
+"""Element of a foot in `FootForceObserver`'s output that holds the vertical force."""
+
+PRESSURE = slice(3, 6)
+"""Elements that hold the center of pressure."""
 
 
 class Phase(Enum):
@@ -50,6 +57,8 @@ class FootState:
         yaw, pitch, pitch_rate: Orientation of the foot relative to the axes of the terrain [rad, rad/s]; pitch is
             positive with the toes down.
         force: Vertical ground reaction force [N].
+        forward, normal: Axes of the sole in W, shape (3,) each.
+        pressure: Center of pressure in W [m], shape (3,).
     """
 
     position: complex
@@ -60,6 +69,9 @@ class FootState:
     pitch: float
     pitch_rate: float
     force: float
+    forward: Array = field(default_factory=lambda: np.eye(3)[0])
+    normal: Array = field(default_factory=lambda: np.eye(3)[2])
+    pressure: Array = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -83,24 +95,28 @@ class BodyState:
         return self.right if side == "Right" else self.left
 
     @staticmethod
-    def measured(com: Array, ankles: Array, foot_forces: Array, terrain: Terrain) -> "BodyState":
+    def measured(com: Array, ankles: Array, foot_forces: Array, ground: Ground) -> "BodyState":
         """Return the measured state.
 
         Args:
             com: Position [m] and velocity [m/s] of the center of mass in W, shape (6,).
-            ankles: See `BodyObserver`, shape (2, 4, 3).
-            foot_forces: Vertical ground reaction force on the right and the left foot [N], shape (2,).
-            terrain: The ground.
+            ankles: See `BodyObserver`, shape (2, 5, 3).
+            foot_forces: See `FootForceObserver`, shape (2, 8).
+            ground: What is known of the ground.
         """
-        p_W, v_W, forward_W, w_W = ankles.swapaxes(0, 1)
-        R_SW = terrain.axes(p_W[:, :2])
-        motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), foot_forces)
+        p_W, v_W, forward_W, normal_W, w_W = ankles.swapaxes(0, 1)
+        R_SW = ground.axes(p_W[:, :2])
+        motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), foot_forces[:, FORCE_Z])
+        axes = (forward_W, normal_W, foot_forces[:, PRESSURE])
         x, y, z, vx, vy, _ = com.tolist()
-        return BodyState(complex(x, y), complex(vx, vy), z, *map(_foot, *(part.tolist() for part in motions)))
+        feet = map(_foot, *(part.tolist() for part in motions), *axes)
+        return BodyState(complex(x, y), complex(vx, vy), z, *feet)
 
 
-def _foot(p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float) -> FootState:
-    """A foot from position and velocity of its ankle in W, and x axis and angular velocity in the terrain's axes."""
+def _foot(
+    p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float, forward: Array, normal: Array, pressure: Array
+) -> FootState:
+    """A foot from position and velocity of its ankle in W, x axis and angular velocity in the axes of the ground."""
     yaw = math.atan2(forward_S[1], forward_S[0])
     return FootState(
         position=complex(p[0], p[1]),
@@ -111,6 +127,9 @@ def _foot(p: Vector, v: Vector, forward_S: Vector, w_S: Vector, force: float) ->
         pitch=math.asin(clip(-forward_S[2], -1.0, 1.0)),
         pitch_rate=math.cos(yaw) * w_S[1] - math.sin(yaw) * w_S[0],
         force=force,
+        forward=forward,
+        normal=normal,
+        pressure=pressure,
     )
 
 
@@ -121,16 +140,19 @@ class FootReference:
     Attributes:
         task: Phase of the foot.
         load: Allowed fraction of the largest contact forces, 0 to 1.
-        yaw: Yaw of the foot, relative to the axes of the terrain [rad].
+        yaw: Yaw of the foot, relative to R_WS [rad].
+        R_WS: Axes of the ground under the foot in W, the normal last, shape (3, 3); in swing, of a plane that turns
+            from one foothold to the next.
         position: Ankle over the level plane (SWING only).
         height: Ankle in W [m] (SWING only).
-        pitch: Pitch of the foot relative to the terrain [rad] (SWING and HEEL_OFF only).
+        pitch: Pitch of the foot relative to R_WS [rad] (SWING and HEEL_OFF only).
         toes: Extension of the toes and its rate [rad, rad/s].
     """
 
     task: FootTask
     load: float
     yaw: float
+    R_WS: Array = field(default_factory=lambda: np.eye(3))
     position: PlanarMotion = PlanarMotion(0.0)
     height: ScalarMotion = ScalarMotion()
     pitch: ScalarMotion = ScalarMotion()
@@ -146,11 +168,13 @@ class WalkingReference:
         zmp: Zero-moment point [m].
         dcm, dcm_reference: Measured and nominal divergent component of motion [m], for records.
         com_height: Center of mass in W [m].
-        ground_height: Ground under the support in W [m].
+        ground_height: Ground under the zero-moment point in W [m].
         right, left: The feet.
         pelvis_yaw, chest_yaw: [rad].
         shoulder_flexion: Angle and rate, of the right and of the left shoulder [rad, rad/s].
         foothold: Where the ankle of the swinging foot will be [m].
+        step_duration: From touchdown to touchdown of the other foot [s].
+        ground: What is known of the ground.
     """
 
     phase: Phase
@@ -166,6 +190,8 @@ class WalkingReference:
     chest_yaw: float
     shoulder_flexion: tuple[tuple[float, float], tuple[float, float]]
     foothold: complex
+    step_duration: float = math.inf
+    ground: Ground = Plane()
 
     def __deepcopy__(self, memo: object) -> Self:
         """Return itself: Drake copies abstract values often, and the reference is immutable."""

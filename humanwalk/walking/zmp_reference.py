@@ -11,7 +11,7 @@ from humanwalk.walking.walking_reference import Phase
 
 def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> PeriodicGait:
     """The periodic gait with the commanded velocity and the velocity towards the path."""
-    timing, placement = parameters.timing, parameters.placement
+    timing, placement = state.timing, parameters.placement
     move = (command.velocity + state.path_correction) * timing.step
     turn = state.turn * timing.step
     # In a sideways walk, every other step is narrower by the sideways displacement.
@@ -30,7 +30,7 @@ def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerP
 
 def remaining_zmp(state: PlannerState, gait: PeriodicGait, parameters: StepPlannerParameters) -> tuple[ZmpSegment, ...]:
     """The nominal zero-moment point to the end of the step, over the feet as they stand [m]."""
-    timing, support = parameters.timing, parameters.support
+    timing, support = state.timing, parameters.support
     stance = support.center_of(state.stance_foot.position, state.heading)
     single = ZmpSegment(stance, stance + gait.roll * state.direction, timing.single_support)
     if state.phase is Phase.SINGLE_SUPPORT:
@@ -38,3 +38,12 @@ def remaining_zmp(state: PlannerState, gait: PeriodicGait, parameters: StepPlann
     old = support.center_of(state.old_foot.position, state.old_heading)
     old_end = old + gait.roll * cmath.exp(1j * state.old_heading)
     return (ZmpSegment(old_end, stance, timing.double_support).remainder(state.elapsed), single)
+
+
+def remaining_ground(state: PlannerState) -> tuple[ZmpSegment, ...]:
+    """Height of the ground under the nominal zero-moment point to the end of the step [m]."""
+    timing, stance = state.timing, state.stance_foot.ground
+    if state.phase is Phase.SINGLE_SUPPORT:
+        return (ZmpSegment(stance, stance, timing.step - state.elapsed),)
+    change = ZmpSegment(state.old_foot.ground, stance, timing.double_support)
+    return (change.remainder(state.elapsed), ZmpSegment(stance, stance, timing.single_support))

@@ -20,6 +20,7 @@ from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
 PARAMETERS = WholeBodyParameters()
+LEVEL = Plane()
 WEIGHT = 70.0 * 9.81
 
 
@@ -30,7 +31,7 @@ def dynamics(plant: MultibodyPlant) -> BodyDynamics:
 
 @pytest.fixture(scope="module")
 def qp(dynamics: BodyDynamics, skeleton: Skeleton) -> WholeBodyQp:
-    return WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
+    return WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS)
 
 
 def body_at(dynamics: BodyDynamics, flexion: float = 0.12, v: Array | None = None) -> Dynamics:
@@ -50,8 +51,9 @@ def reference_for(
     right: FootReference | None = None,
     left: None = None,
     ground_height: float = 0.0,
+    terrain: Plane = LEVEL,
 ) -> WalkingReference:
-    flat = FootReference(FootTask.FLAT, 1.0, 0.0)
+    flat = FootReference(FootTask.FLAT, 1.0, 0.0, terrain.axes(np.zeros(2)).T)
     com = complex(body.com.position[0], body.com.position[1])
     return WalkingReference(
         phase=Phase.STAND,
@@ -67,6 +69,7 @@ def reference_for(
         chest_yaw=0.0,
         shoulder_flexion=((0.0, 0.0), (0.0, 0.0)),
         foothold=0j,
+        ground=terrain,
     )
 
 
@@ -165,7 +168,7 @@ def test_without_ground_under_the_feet_the_body_falls(dynamics: BodyDynamics, qp
 def test_an_infeasible_program_has_no_solution_and_does_not_affect_the_next(
     dynamics: BodyDynamics, skeleton: Skeleton
 ) -> None:
-    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane())
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS)
     body = body_at(dynamics)
     broken = body._replace(h=body.h + 1e6)
     assert qp.solve(broken, reference_for(body), rest(qp)) is None
@@ -191,16 +194,24 @@ def raised(dynamics: BodyDynamics, body: Dynamics, offset: float) -> Dynamics:
     return dynamics.at(np.concatenate((q, body.v)))
 
 
-def test_ground_and_body_can_be_raised_together(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
+def test_ground_and_body_can_be_raised_together(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     terrain = RaisedPlane()
-    on_raised = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
     body = body_at(dynamics)
     zmp = complex(*body.com.position[:2]) + 0.02
     level = qp.solve(body, reference_for(body, zmp), rest(qp))
     body = raised(dynamics, body, terrain.offset)
-    high = on_raised.solve(body, reference_for(body, zmp, ground_height=terrain.offset), rest(qp))
+    high = qp.solve(body, reference_for(body, zmp, ground_height=terrain.offset, terrain=terrain), rest(qp))
     assert high.forces == pytest.approx(level.forces, abs=1e-4)
     assert high.torque == pytest.approx(level.torque, abs=1e-4)
+
+
+def test_on_ice_forces_use_a_share_of_its_friction(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
+    ice, body = Plane(friction_coefficient=0.2), body_at(dynamics)
+    far = complex(*body.com.position[:2]) - 0.5
+    f = qp.solve(body, reference_for(body, far, terrain=ice), rest(qp)).forces
+    usable = PARAMETERS.friction_use * 0.2
+    assert (np.abs(f[:, 0]) + np.abs(f[:, 1]) <= usable * f[:, 2] + 1e-3).all()
+    assert np.abs(f[:, 0]).sum() == pytest.approx(usable * f[:, 2].sum(), rel=0.01)
 
 
 def on_slope(dynamics: BodyDynamics, slope: float, foot_pitch: float = 0.0) -> Dynamics:
@@ -219,14 +230,14 @@ def on_slope(dynamics: BodyDynamics, slope: float, foot_pitch: float = 0.0) -> D
 
 @pytest.mark.parametrize("slope", [-0.2, -0.1, 0.1, 0.2])
 def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(
-    dynamics: BodyDynamics, skeleton: Skeleton, slope: float
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton, slope: float
 ) -> None:
     terrain = Plane(slope=slope)
-    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
     body = on_slope(dynamics, slope)
-    *_, contacts = qp.program(body, reference_for(body), rest(qp))
+    reference = reference_for(body, terrain=terrain)
+    *_, contacts = qp.program(body, reference, rest(qp))
     assert contacts.points.tolist() == list(range(12))
-    solution = qp.solve(body, reference_for(body), rest(qp))
+    solution = qp.solve(body, reference, rest(qp))
     f_S = solution.forces @ terrain.axes(np.zeros(2)).T
     assert (np.abs(f_S[:, 0]) + np.abs(f_S[:, 1]) <= PARAMETERS.friction * f_S[:, 2] + 1e-3).all()
     assert newton_residual(body, solution, skeleton)[:6] == pytest.approx(np.zeros(6), abs=0.05)
@@ -235,12 +246,12 @@ def test_on_a_slope_all_points_of_flat_feet_are_in_contact_within_friction(
 @pytest.mark.parametrize("slope", [-0.1, 0.0, 0.1])
 @pytest.mark.parametrize("pitch", [-0.1, 0.1])
 def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(
-    dynamics: BodyDynamics, skeleton: Skeleton, slope: float, pitch: float
+    dynamics: BodyDynamics, qp: WholeBodyQp, slope: float, pitch: float
 ) -> None:
-    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, Plane(slope=slope))
+    terrain = Plane(slope=slope)
     body = on_slope(dynamics, slope, pitch)
-    landed = FootReference(FootTask.HEEL_STRIKE, 1.0, 0.0)
-    solution = qp.solve(body, reference_for(body, right=landed), rest(qp))
+    landed = FootReference(FootTask.HEEL_STRIKE, 1.0, 0.0, terrain.axes(np.zeros(2)).T)
+    solution = qp.solve(body, reference_for(body, right=landed, terrain=terrain), rest(qp))
     turning = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[1]
     parallel = on_slope(dynamics, slope)
     unturned = body.frame(LEGS["Right"].hindfoot).R_WB @ parallel.frame(LEGS["Right"].hindfoot).R_WB.T
@@ -248,12 +259,11 @@ def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(
     assert turning * pitch < -1.0
 
 
-def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, skeleton: Skeleton) -> None:
+def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     slope = 0.2
     terrain = Plane(slope=slope)
-    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), PARAMETERS, terrain)
     body = raised(dynamics, on_slope(dynamics, slope), 0.05)
-    solution = qp.solve(body, reference_for(body), rest(qp))
+    solution = qp.solve(body, reference_for(body, terrain=terrain), rest(qp))
     acceleration = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[3:]
     normal = terrain.axes(np.zeros(2))[2]
     assert normal @ acceleration < -1.0

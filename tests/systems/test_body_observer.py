@@ -119,9 +119,13 @@ def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
     plant.SetFreeBodyPose(context, pelvis, X_WP)
     observed = observer.CreateDefaultContext()
     observer.GetInputPort("state").FixValue(observed, plant.GetPositionsAndVelocities(context))
-    ankles = observer.GetOutputPort("ankles").Eval(observed).reshape(2, 4, 3)
-    body = BodyState.measured(observer.GetOutputPort("com").Eval(observed), ankles, np.array((1.0, 2.0)), terrain)
-    assert (body.right.force, body.left.force) == (1.0, 2.0)
+    ankles = observer.GetOutputPort("ankles").Eval(observed).reshape(2, 5, 3)
+    forces = np.arange(16.0).reshape(2, 8)
+    body = BodyState.measured(observer.GetOutputPort("com").Eval(observed), ankles, forces, terrain)
+    assert (body.right.force, body.left.force) == (2.0, 10.0)
+    assert body.right.pressure.tolist() == [3.0, 4.0, 5.0]
     for foot in (body.right, body.left):
         assert (foot.yaw, foot.pitch) == pytest.approx((yaw, pitch), abs=1e-9)
         assert foot.pitch_rate == pytest.approx(0.0, abs=1e-9)
+        np.testing.assert_allclose(foot.forward, R_WF[:, 0], atol=1e-9)
+        np.testing.assert_allclose(foot.normal, R_WF[:, 2], atol=1e-9)

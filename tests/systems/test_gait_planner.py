@@ -6,6 +6,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
@@ -17,7 +18,7 @@ PERIOD = 0.004
 
 @pytest.fixture
 def planner(plant: MultibodyPlant) -> GaitPlanner:
-    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, Plane())
+    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, SoleExtent(0.055, 0.211, 0.048), Plane())
 
 
 def simulator_of(planner: GaitPlanner, plant: MultibodyPlant, command: tuple[float, ...]) -> Simulator:
@@ -39,7 +40,7 @@ def test_ports(planner: GaitPlanner) -> None:
     inputs = [planner.get_input_port(i) for i in range(planner.num_input_ports())]
     assert [(port.get_name(), port.size()) for port in inputs] == [
         ("com", 6),
-        ("ankles", 24),
+        ("ankles", 30),
         ("foot_forces", 16),
         ("command", 3),
     ]

@@ -5,6 +5,7 @@ import pytest
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
+from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.skeleton import Skeleton
@@ -19,11 +20,12 @@ from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, WalkingReference
 
 PERIOD = 0.004
+LOADED = np.tile((0.0, 0.0, 350.0, 0.0, 0.0, 0.0, 0.0, 1.0), (2, 1))
 
 
 @pytest.fixture
 def controller(plant: MultibodyPlant, skeleton: Skeleton) -> WholeBodyController:
-    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {ARMS["Left"].elbow: 0.4}, PERIOD, Plane())
+    return WholeBodyController(plant, skeleton, WholeBodyParameters(), {ARMS["Left"].elbow: 0.4}, PERIOD)
 
 
 @pytest.fixture
@@ -37,13 +39,13 @@ def standing(plant: MultibodyPlant, joints: JointMap) -> Array:
 
 
 @pytest.fixture
-def plan(plant: MultibodyPlant, standing: Array) -> WalkingReference:
+def plan(plant: MultibodyPlant, skeleton: Skeleton, standing: Array) -> WalkingReference:
     observer = BodyObserver(plant)
     context = observer.CreateDefaultContext()
     observer.GetInputPort("state").FixValue(context, standing)
     com, ankles = (observer.GetOutputPort(name).Eval(context) for name in ("com", "ankles"))
-    body = BodyState.measured(com, ankles.reshape(2, 4, 3), np.full(2, 350.0), Plane())
-    planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, Plane())
+    body = BodyState.measured(com, ankles.reshape(2, 5, 3), LOADED, Plane())
+    planner = StepPlanner(StepPlannerParameters(), 0.98, 0.068, 0.864, "Right", PERIOD, sole_extent(skeleton), Plane())
     return planner.update(planner.start(body), body, Command())[1]
 
 

@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.planner_state import Foothold, PlannerState, Swing
+from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.swing_foot import LANDING_DEPTH, SwingProfile
 from humanwalk.walking.walking_reference import FootState, FootTask, Phase
 
@@ -29,7 +30,7 @@ def state_at(elapsed: float, steps: int = 1) -> PlannerState:
 def swing_to(foothold: Foothold, toes: float = 0.5) -> Swing:
     foot = FootState(OLD.position, 0j, ANKLE + 0.05, height_rate=0.2, yaw=0.1, pitch=0.9, pitch_rate=3.0, force=0.0)
     profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing)
-    return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes)
+    return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes, rise=foothold.ground)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """A foot rolls over its heel after touchdown and over its ball before toe-off, farther in a faster walk."""
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +13,7 @@ DOUBLE_SUPPORT = 0.1
 
 
 def over_ball(since: float, speed: float = 1.2) -> FootReference:
-    return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, speed)
+    return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
 
 
 def test_heels_rise_above_a_minimum_forward_speed() -> None:
@@ -42,5 +43,5 @@ def test_toes_stay_on_the_ground_while_the_foot_pitches() -> None:
 
 
 def test_a_foot_is_loaded_from_touchdown_on() -> None:
-    landed = ROCKERS.over_heel(0.3)
+    landed = ROCKERS.over_heel(0.3, np.eye(3))
     assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)

@@ -5,11 +5,13 @@ from typing import Any
 
 import pytest
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import STOP_SPEED, PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
@@ -17,7 +19,10 @@ PARAMETERS = StepPlannerParameters()
 TIMING = PARAMETERS.timing
 ANKLE = 0.07
 WALK, STOP = Command(0.5), Command()
-PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1))
+FOOTHOLDS = FootholdPlanner(
+    SoleExtent(0.055, 0.211, 0.048), PARAMETERS.footholds, PARAMETERS.placement, PARAMETERS.pacing, com_height=0.95
+)
+PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1), FOOTHOLDS)
 
 
 def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
@@ -73,7 +78,7 @@ def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured() 
     assert (state.stance, state.elapsed, state.steps, state.swing) == ("Right", 0.0, 2, None)
     assert state.right.position == 0.5 - 0.1j
     assert state.right.ground - state.left.ground == pytest.approx(0.5 * 0.1, rel=0.01)
-    assert state.support_start == before.left.ground
+    assert state.support == before.support
 
 
 def test_the_last_step_ends_in_standing() -> None:

@@ -3,7 +3,7 @@
 import cmath
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,10 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.body.limbs import other_side
 from humanwalk.numerics import Array
-from humanwalk.terrain import Plane
-from humanwalk.terrain.terrain import height_at
+from humanwalk.terrain import Course, Plane
+from humanwalk.terrain.steps import Stairs
 from humanwalk.walking.command import Command
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -31,18 +32,27 @@ PARAMETERS = StepPlannerParameters()
 LEVEL = Plane()
 
 
-class Stairs:
-    """Stairs along x; only their heights are defined."""
+SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 
-    def __init__(self, rise: float, tread: float = 0.3, base: float = 0.0) -> None:
-        self.rise, self.tread, self.base = rise, tread, base
 
-    def height(self, xy: Array) -> Any:
-        return self.base + self.rise * np.floor(xy[..., 0] / self.tread)
+def stairs(rise: float) -> Course:
+    """Steps of 0.4 m from x = 0.5 m on, up or down."""
+    direction: Any = "up" if rise >= 0.0 else "down"
+    return Course(pieces=(Stairs(rise=abs(rise), tread=0.4, number=30, direction=direction),), run_up=0.5)
+
+
+@dataclass(frozen=True)
+class Raised(Plane):
+    """A level plane at another height."""
+
+    base: float = 0.0
+
+    def height(self, xy: Array) -> Array:
+        return super().height(xy) + self.base
 
 
 def planner(terrain: Any = LEVEL, period: float = PERIOD) -> StepPlanner:
-    return StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period, terrain)
+    return StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period, SOLE, terrain)
 
 
 def foot(position: Any, force: float = 350.0, **changes: Any) -> FootState:
@@ -259,7 +269,7 @@ def raised(body: Any, height: Any) -> BodyState:
 
 @pytest.mark.parametrize("height", [-3.0, 40.0])
 def test_on_higher_ground_every_height_is_greater_by_that(height: float) -> None:
-    low, high = planner(), planner(Stairs(0.0, base=height))
+    low, high = planner(), planner(Raised(base=height))
     state = high.start(raised(standing(), height))
     for time, _, reference, body in pendulum_walk(low, walk_at(0.8), 4.0):
         state, above = high.update(state, raised(body, height), walk_at(0.8)(time))
@@ -277,34 +287,37 @@ def lifted(height: ScalarMotion, by: float) -> tuple[float, float, float]:
     return (height[0] + by, *height[1:])
 
 
-@pytest.mark.parametrize("rise", [0.05, -0.05])
-def test_a_swing_ends_at_the_height_of_its_foothold(rise: float) -> None:
-    stairs, swings = Stairs(rise), 0
-    walk = list(pendulum_walk(planner(stairs), walk_at(0.5), 6.0))
+@pytest.mark.parametrize("rise", [0.05, -0.05, 0.15])
+def test_on_stairs_every_foothold_is_on_a_tread_and_the_swing_ends_there(rise: float) -> None:
+    course, swings = stairs(rise), 0
+    walk = list(pendulum_walk(planner(course), walk_at(0.5), 6.0))
     for (_, state, reference, _), (_, later, _, _) in pairwise(walk):
         if state.phase is Phase.SINGLE_SUPPORT and later.phase is Phase.DOUBLE_SUPPORT:
+            swing = state.swing
+            assert swing is not None
             ankle = reference.foot(state.swing_side).height[0]
-            goal = height_at(stairs, reference.foothold) + ANKLE - LANDING_DEPTH  # type: ignore[arg-type]
-            assert ankle == pytest.approx(goal, abs=0.01)
+            assert ankle == pytest.approx(swing.foothold.ground + ANKLE - LANDING_DEPTH, abs=0.01)
+            xy = np.array([(reference.foothold.real + x, reference.foothold.imag) for x in (-SOLE.back, SOLE.front)])
+            assert (course.height(xy) == swing.foothold.ground).all()
             swings += 1
     assert swings > 5
 
 
 @pytest.mark.parametrize("rise", [0.05, -0.05])
-def test_the_ground_under_the_support_goes_from_foot_to_foot_without_a_jump(rise: float) -> None:
-    stairs = Stairs(rise)
-    walk = [w for w in pendulum_walk(planner(stairs), lambda time: Command(0.5 if 0.2 < time < 5.0 else 0.0), 8.0)]
-    grounds = [reference.ground_height for _, _, reference, _ in walk]
-    assert max(abs(later - earlier) for earlier, later in pairwise(grounds)) < 0.01
-    for _, state, reference, _ in walk:
-        if reference.phase is Phase.SINGLE_SUPPORT:
-            assert reference.ground_height == pytest.approx(height_at(stairs, state.stance_foot.position))  # type: ignore[arg-type]
-    assert abs(grounds[-1]) >= 4 * abs(rise)
+def test_the_center_of_mass_follows_the_stairs(rise: float) -> None:
+    course = stairs(rise)
+    walk = list(pendulum_walk(planner(course), lambda time: Command(0.5 if 0.2 < time < 5.0 else 0.0), 9.0))
+    heights = [reference.com_height for _, _, reference, _ in walk]
+    assert max(abs(later[0] - earlier[0]) for earlier, later in pairwise(heights)) < 0.005
+    *_, (_, state, reference, _) = walk
+    assert state.phase is Phase.STAND
+    assert abs(state.stance_foot.ground) >= 3 * abs(rise) - 1e-9
+    standing_height = reference.com_height[0] - 0.5 * (state.right.ground + state.left.ground)
+    assert standing_height == pytest.approx(heights[0][0], abs=0.03)
 
 
 def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stairs() -> None:
-    walk = pendulum_walk(planner(Stairs(0.05)), walk_at(0.5), 6.0)
-    references = [reference for _, _, reference, _ in walk]
+    references = [reference for _, _, reference, _ in pendulum_walk(planner(stairs(0.05)), walk_at(0.5), 6.0)]
     for before, after in pairwise(references):
         if before.phase is after.phase and after.phase_time - before.phase_time == pytest.approx(PERIOD):
             mean_rate = 0.5 * (before.com_height[1] + after.com_height[1])
@@ -312,16 +325,10 @@ def test_the_rate_of_the_height_of_the_center_of_mass_is_its_derivative_on_stair
             assert rate == pytest.approx(mean_rate, abs=0.02)
 
 
-def test_the_terrain_is_evaluated_at_most_once_per_update_between_touchdowns() -> None:
-    class Counting(Stairs):
-        calls = 0
-
-        def height(self, xy: Array) -> float:
-            Counting.calls += 1
-            return super().height(xy)
-
-    plan, before, previous = planner(Counting(0.0)), 0, None
-    for _, state, _, _ in pendulum_walk(plan, walk_at(1.0), 4.0):
-        landed = previous is Phase.SINGLE_SUPPORT and state.phase is Phase.DOUBLE_SUPPORT
-        assert Counting.calls - before <= (2 if landed or previous is None else 1)
-        before, previous = Counting.calls, state.phase
+def test_on_stairs_the_walker_takes_one_tread_a_step() -> None:
+    walk = list(pendulum_walk(planner(stairs(0.15)), walk_at(1.0), 9.0))
+    landed = [later for (_, a, _, _), (_, later, _, _) in pairwise(walk)
+              if a.phase is Phase.SINGLE_SUPPORT and later.phase is Phase.DOUBLE_SUPPORT]  # fmt: skip
+    rises = [after.stance_foot.ground - before.stance_foot.ground for before, after in pairwise(landed)]
+    assert max(rises) == pytest.approx(0.15)
+    assert sum(rises) >= 5 * 0.15

@@ -12,8 +12,9 @@ from humanwalk.body import SIDES
 from humanwalk.sides import Side
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.planner_state import Foothold, PlannerState
+from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.walking_reference import Phase
 from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
 
@@ -33,7 +34,7 @@ def state_at(
     u = cmath.exp(1j * heading)
     feet = {"right": Foothold(-0.1j * u, 0.0), "left": Foothold((0.5 + 0.1j) * u, 0.0)}
     path = CommandedPath.begin(0.0, heading)
-    state = PlannerState(phase, elapsed, stance, **feet, support_start=0.0, heading=heading, old_heading=heading,  # type: ignore[arg-type]
+    state = PlannerState(phase, elapsed, stance, **feet, support=0.0, heading=heading, old_heading=heading,  # type: ignore[arg-type]
                          path=path, height=0.9)  # fmt: skip
     return state._replace(**changes)
 

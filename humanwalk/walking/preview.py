@@ -1,0 +1,176 @@
+"""The next footholds on the ground ahead, and what they change in the desired periodic gait.
+
+The periodic gait has equal steps on a plane. The DCM at the end of a step is w times the integral of exp(-w t) z(t)
+over the future zero-moment point z. With q_k the displacement of the k-th foothold from the one before, beyond that of
+the gait, a = exp(-w T), and kappa as in `foothold_gain`, irregular footholds therefore shift it by
+
+    sum over k of a^(k-1) q_k / kappa.
+
+The heights of the footholds are a third coordinate of the same equation (Englsberger et al. 2015).
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from humanwalk.body import Side
+from humanwalk.body.contact import SoleExtent
+from humanwalk.body.limbs import other_side
+from humanwalk.numerics.scalars import clip
+from humanwalk.quantity import quantity
+from humanwalk.terrain.face import Face
+from humanwalk.terrain.terrain import Ground
+from humanwalk.walking.foot_placement import MAX_LENGTH, OUTWARD, StepPlacement, foothold_gain
+from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold
+from humanwalk.walking.lipm import PeriodicGait
+
+STEPS = 3
+"""Number of footholds that are planned; each counts a tenth to a fifth of the one before."""
+
+MIN_LENGTH = 0.05
+"""Mean length of the desired steps from which on the speed follows the footholds [m]."""
+
+PACE_RANGE = (0.2, 1.5)
+"""Range of the speed over irregular footholds, relative to the desired one (our choice)."""
+
+
+@dataclass(frozen=True)
+class Pacing:
+    """Duration and length of steps on ground that is not level."""
+
+    free_rise: float = quantity(0.07, "m", 0.0, 0.5)
+    """Difference in height between a foot's last and next foothold up to which a step has the ordinary duration."""
+
+    slowing: float = quantity(1.2, "1/m", 0.0, 10.0)
+    """Increase of the duration per difference in height beyond that, relative to the ordinary one."""
+
+    friction_use: float = quantity(0.8, "", 0.1, 1.0)
+    """Share of the friction that forces of the ground use at most; shortens steps on ice and on slopes."""
+
+    def duration_factor(self, rise: float) -> float:
+        """Duration of a step relative to the ordinary one, in which a foot rises or descends by `rise` [m]."""
+        return 1.0 + self.slowing * max(abs(rise) - self.free_rise, 0.0)
+
+    def longest_step(self, face: Face, com_height: float, width: float) -> float:
+        """Longest step [m] of a width [m], for which forces from feet to center of mass are within friction."""
+        usable = max(self.friction_use * face.friction - math.hypot(*face.gradient), 0.0)
+        return math.sqrt(max((2.0 * com_height * usable) ** 2 - width**2, MIN_LENGTH**2))
+
+
+class Preview(NamedTuple):
+    """The next footholds.
+
+    Attributes:
+        footholds: The next foothold, and those after it; none in standing.
+        moves: Displacements from each foothold to the next, beyond those of the gait [m]; 0 on a plane.
+        pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
+    """
+
+    footholds: tuple[Foothold, ...] = ()
+    moves: tuple[complex, ...] = ()
+    pace: float = 1.0
+
+    @property
+    def first_move(self) -> complex:
+        """Displacement of the next foothold from that of the gait [m]."""
+        return self.moves[0] if self.moves else 0.0
+
+    def relative_to(self, gait: PeriodicGait, other: PeriodicGait, stance: Side, direction: complex) -> Preview:
+        """The preview of one gait with moves relative to another one."""
+        moves = []
+        for move in self.moves:
+            change = gait.displacement.on(stance) - other.displacement.on(stance)
+            moves.append(move + change * direction)
+            direction, stance = direction * cmath.exp(1j * gait.turn), other_side(stance)
+        return self._replace(moves=tuple(moves))
+
+
+def dcm_shift(increments: tuple[complex, ...], gait: PeriodicGait, frequency: float) -> complex:
+    """Displacement of the DCM at the end of the step by increments of the future footholds [m]; complex or heights."""
+    decay = math.exp(-frequency * (gait.double_support + gait.single_support))
+    total = sum(decay**k * increment for k, increment in enumerate(increments))
+    return total / foothold_gain(frequency, gait.double_support)
+
+
+@dataclass(frozen=True)
+class FootholdPlanner:
+    """Plans footholds on the ground.
+
+    Attributes:
+        sole: Extent of a sole.
+        search: Which faces are footholds.
+        placement: Limits of the footholds.
+        pacing: Length of steps.
+        com_height: Height of the center of mass above the ground [m].
+    """
+
+    sole: SoleExtent
+    search: FootholdSearch
+    placement: StepPlacement
+    pacing: Pacing
+    com_height: float
+
+    def nearest(
+        self,
+        ground: Ground,
+        desired: complex,
+        yaw: float,
+        stance: Foothold,
+        side: Side,
+        direction: complex,
+        current: Face | None = None,
+    ) -> Foothold:
+        """The nearest foothold that the other foot reaches from a stance foot; see `nearest_foothold`.
+
+        Args:
+            ground: What is known of the ground.
+            desired: Desired position of the ankle [m].
+            yaw: Heading of the foot [rad].
+            stance: The stance foot.
+            side: Its side.
+            direction: Its heading, as a unit vector.
+            current: Face that the foot is on its way to.
+        """
+
+        def is_reachable(place: complex, height: float) -> bool:
+            local = (place - stance.position) / direction
+            return (
+                abs(height - stance.ground) <= self.search.max_rise
+                and abs(local.real) <= MAX_LENGTH
+                and OUTWARD[side] * local.imag >= self.placement.min_step_width(local.real) - 1e-9
+            )
+
+        return nearest_foothold(ground, desired, yaw, self.sole, self.search, is_reachable, current)
+
+    def preview(self, ground: Ground, stance: Foothold, side: Side, heading: float, gait: PeriodicGait) -> Preview:
+        """The next footholds of a gait.
+
+        Args:
+            ground: What is known of the ground.
+            stance: The stance foot.
+            side: Its side.
+            heading: Its heading [rad].
+            gait: The desired gait.
+        """
+        footholds, moves = [], []
+        length = desired_length = 0.0
+        for _ in range(STEPS):
+            direction = cmath.exp(1j * heading)
+            step = gait.displacement.on(side)
+            longest = self.pacing.longest_step(stance.face, self.com_height, abs(step.imag))
+            shortened = complex(clip(step.real, -longest, longest), step.imag)
+            desired = stance.position + shortened * direction
+            heading += gait.turn
+            foothold = self.nearest(ground, desired, heading, stance, side, direction)
+            moves.append((foothold.position - desired) + (shortened - step) * direction)
+            footholds.append(foothold)
+            length += ((foothold.position - desired) / direction + shortened).real
+            desired_length += step.real
+            stance, side = foothold, other_side(side)
+        pace = 1.0
+        if desired_length > STEPS * MIN_LENGTH:
+            pace = clip(length / desired_length, *PACE_RANGE)
+        return Preview(tuple(footholds), tuple(moves), pace)

@@ -1,0 +1,146 @@
+"""How a swinging foot clears the ground between two footholds: the height to add, and when to move forward.
+
+The plane that turns from the old to the new foothold while the ankle moves is the ground of an ordinary swing. What
+stands out of it under the sole is cleared by an additional lift. A foot beside a riser rises before it moves forward,
+and one that lands below an edge moves forward before it sinks.
+"""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from humanwalk.body.contact import SoleExtent
+from humanwalk.numerics import Array, Mask
+from humanwalk.numerics.scalars import quintic_blend
+from humanwalk.quantity import quantity
+from humanwalk.terrain.terrain import Ground
+from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.motions import PiecewiseCubic, ScalarMotion
+
+INTERVALS = 8
+"""Number of equal parts of the swing at whose ends the additional lift is given."""
+
+SAMPLES = 8 * INTERVALS + 1
+"""Number of places of the ankle, and of times of the swing, that are tried."""
+
+SPACING = 0.03
+"""Largest distance of two points under the sole [m]."""
+
+
+@dataclass(frozen=True)
+class ClearanceParameters:
+    """How the swing clears the ground."""
+
+    margin: float = quantity(0.03, "m", 0.0, 0.2)
+    """Height by which the sole clears what stands out of the ground."""
+
+    tolerance: float = quantity(0.005, "m", 0.0, 0.05)
+    """Height up to which nothing stands out: an ordinary swing clears it."""
+
+    nearness: float = quantity(0.06, "m", 0.0, 0.3)
+    """Distance from its footholds up to which a foot is beside a riser, or below an edge."""
+
+    rising: float = quantity(0.25, "", 0.0, 0.45)
+    """Part of the swing in which a foot beside a riser only rises."""
+
+    sinking: float = quantity(0.2, "", 0.0, 0.45)
+    """Part of the swing in which a foot below an edge only sinks."""
+
+
+class Clearance(NamedTuple):
+    """What a swing adds to that on a plane.
+
+    Attributes:
+        lift: Additional height at the inner ends of the `INTERVALS` [m].
+        depart, arrive: Progress at which the foot begins and ends to move over the plane.
+    """
+
+    lift: tuple[float, ...] = (0.0,) * (INTERVALS - 1)
+    depart: float = 0.0
+    arrive: float = 1.0
+
+    def at(self, progress: float) -> ScalarMotion:
+        """Additional height, and its derivatives by the progress."""
+        if not any(self.lift):
+            return ScalarMotion()
+        return PiecewiseCubic.through((0.0, *self.lift, 0.0)).at(progress)
+
+    def filtered(self, goal: Clearance, smoothing: float) -> Clearance:
+        """The clearance moved toward another one by a share of the difference."""
+        lift = tuple(a + smoothing * (b - a) for a, b in zip(self.lift, goal.lift, strict=True))
+        return goal._replace(lift=lift)
+
+
+def clearance(
+    ground: Ground, start: Foothold, goal: Foothold, yaw: float, sole: SoleExtent, law: ClearanceParameters
+) -> Clearance:
+    """Return what a swing from one foothold to another has to add.
+
+    Args:
+        ground: What is known of the ground.
+        start: Where the foot leaves the ground.
+        goal: Where it goes.
+        yaw: Heading of the foot [rad].
+        sole: Extent of the sole.
+        law: Parameters.
+    """
+    share = np.linspace(0.0, 1.0, SAMPLES)
+    above = height_above_plane(ground, start, goal, share, yaw, sole)
+    if above.max() <= law.tolerance:
+        return Clearance()
+    near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
+    # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
+    least = law.margin + near * abs(goal.ground - start.ground)
+    depart = law.rising if above[share <= near].max() > least else 0.0
+    arrive = 1.0 - law.sinking if above[share >= 1.0 - near].max() > least else 1.0
+    # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
+    times = np.linspace(0.0, 1.0, SAMPLES)
+    moved = quintic_blend(np.clip((times - depart) / (arrive - depart), 0.0, 1.0))[0]
+    needed = np.interp(moved, share, above)
+    needed = np.where(needed > law.tolerance, needed + law.margin, 0.0)
+    needed *= quintic_blend(np.clip(times / depart, 0.0, 1.0))[0] if depart > 0.0 else 1.0
+    needed *= quintic_blend(np.clip((1.0 - times) / (1.0 - arrive), 0.0, 1.0))[0] if arrive < 1.0 else 1.0
+    lift = [needed.max(where=_is_around(times, knot, depart, arrive), initial=0.0) for knot in _knots()]
+    return Clearance(tuple(float(height) for height in lift), depart, arrive)
+
+
+def _knots() -> Array:
+    """Progress of the swing at which the additional lift is given."""
+    return np.linspace(0.0, 1.0, INTERVALS + 1)[1:-1]
+
+
+def _is_around(times: Array, knot: float, depart: float, arrive: float) -> Mask:
+    """Whether the lift at a knot counts for a time: in both intervals beside it, but not across depart or arrive."""
+    width = 1.0 / INTERVALS + 1e-9
+    low = knot - width if knot >= depart else knot - 1e-9
+    high = knot + width if knot <= arrive else knot + 1e-9
+    around: Mask = (times >= low) & (times <= high)
+    if knot < depart:
+        around &= times <= knot + 1e-9
+    if knot > arrive:
+        around &= times >= knot - 1e-9
+    return around
+
+
+def height_above_plane(
+    ground: Ground, start: Foothold, goal: Foothold, share: Array, yaw: float, sole: SoleExtent
+) -> Array:
+    """Return the greatest height [m] of the ground under the sole above the plane that turns from start to goal.
+
+    Args:
+        ground, start, goal, yaw, sole: See `clearance`.
+        share: Shares of the way of the ankle, shape (n,).
+    """
+    x = np.linspace(-sole.back, sole.front, 2 + int((sole.back + sole.front) / SPACING))
+    y = np.linspace(-sole.half_width, sole.half_width, 2 + int(2.0 * sole.half_width / SPACING))
+    under = cmath.exp(1j * yaw) * (x[:, None] + 1j * y).ravel()
+    points = (start.position + share * (goal.position - start.position))[:, None] + under
+    xy = np.stack((points.real, points.imag), axis=-1)
+    plane = (1.0 - share[:, None]) * start.face.height(xy) + share[:, None] * goal.face.height(xy)
+    above: Array = (ground.height(xy) - plane).max(axis=1)
+    # An edge between two places counts for both.
+    return np.maximum(above, np.maximum(np.append(above[1:], above[-1]), np.append(above[0], above[:-1])))

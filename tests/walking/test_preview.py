@@ -1,0 +1,89 @@
+"""The next footholds: those of the gait on a plane, on faces elsewhere, with a speed and duration that suit them."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from humanwalk.body.contact import SoleExtent
+from humanwalk.terrain import Course, Ground, Plane
+from humanwalk.terrain.slope import Flat
+from humanwalk.terrain.steps import Stairs
+from humanwalk.walking.foot_placement import StepPlacement
+from humanwalk.walking.footholds import Foothold, FootholdSearch
+from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment, backward
+from humanwalk.walking.preview import STEPS, FootholdPlanner, Pacing, dcm_shift
+
+SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
+PLACEMENT, PACING = StepPlacement(), Pacing()
+FREQUENCY = 3.2
+PLANNER = FootholdPlanner(SOLE, FootholdSearch(), PLACEMENT, PACING, com_height=0.95)
+STAIRS = Course(pieces=(Flat(length=0.5), Stairs(rise=0.18, tread=0.29, number=12)), run_up=0.5)
+
+
+def gait(length: float, turn: float = 0.0, double: float = 0.1, single: float = 0.43) -> PeriodicGait:
+    return PeriodicGait(PerStance(length - 0.16j, length + 0.16j), turn, 0.1, double, single)
+
+
+def preview_on(ground: Ground, length: float, position: complex = 0.08j, turn: float = 0.0):  # type: ignore[no-untyped-def]
+    return PLANNER.preview(ground, Foothold.on(ground, position), "Left", 0.0, gait(length, turn))
+
+
+@given(st.floats(-0.3, 0.7), st.floats(-0.2, 0.2), st.floats(-0.1, 0.1))
+def test_on_a_plane_the_footholds_are_those_of_the_gait(length: float, turn: float, slope: float) -> None:
+    preview = preview_on(Plane(slope=slope), length, turn=turn)
+    assert preview.moves == (0.0,) * STEPS
+    assert preview.pace == 1.0
+    assert preview.footholds[0].position == pytest.approx(0.08j + length - 0.16j)
+
+
+def test_on_stairs_every_step_is_one_tread_and_the_pace_follows() -> None:
+    preview = preview_on(STAIRS, 0.45, 1.0 + 0.29 * 3 + 0.06 + 0.08j)
+    heights = [foothold.ground / 0.18 for foothold in preview.footholds]
+    assert heights == pytest.approx([5, 6, 7])
+    assert preview.pace == pytest.approx(0.29 / 0.45, rel=0.05)
+
+
+def test_on_ice_the_steps_are_short() -> None:
+    ice = preview_on(Plane(friction_coefficient=0.15), 0.5)
+    assert ice.pace < 0.6
+    step = ice.footholds[0].position - 0.08j
+    assert abs(step) / 2.0 / 0.95 <= PACING.friction_use * 0.15 + 1e-9
+
+
+@given(st.floats(0.2, 0.6), st.floats(-0.5, 0.5), st.floats(0.05, 0.2), st.floats(0.3, 0.6))
+def test_the_shift_of_the_dcm_is_that_of_the_displaced_zero_moment_points(
+    length: float, move: float, double: float, single: float
+) -> None:
+    """A foothold displaced by `move` with all after it, against the pendulum over many steps."""
+    periodic = gait(length, 0.0, double, single)
+
+    def dcm(displaced: float) -> complex:
+        feet = [0.0, *(k * length + displaced for k in range(1, 40))]
+        segments = []
+        for old, new in pairwise(feet):
+            segments += [ZmpSegment(old, new, double), ZmpSegment(new, new, single)]
+        return backward(tuple(segments), feet[-1], FREQUENCY)
+
+    assert dcm(move) - dcm(0.0) == pytest.approx(dcm_shift((move,), periodic, FREQUENCY), abs=1e-9)
+
+
+def test_moves_relative_to_a_slower_gait_lead_to_the_same_footholds() -> None:
+    fast, slow = gait(0.45, turn=0.1), gait(0.3, turn=0.1)
+    preview = preview_on(Plane(), 0.45, turn=0.1).relative_to(fast, slow, "Left", 1.0)
+    place = 0.08j
+    direction, side = 1.0 + 0j, "Left"
+    for move, foothold in zip(preview.moves, preview.footholds, strict=True):
+        place += slow.displacement.on(side) * direction + move  # type: ignore[arg-type]
+        assert place == pytest.approx(foothold.position)
+        direction, side = direction * complex(math.cos(0.1), math.sin(0.1)), "Right" if side == "Left" else "Left"
+
+
+@given(st.floats(-0.4, 0.4))
+def test_steps_over_a_large_rise_take_longer(rise: float) -> None:
+    factor = PACING.duration_factor(rise)
+    assert factor == PACING.duration_factor(-rise) >= 1.0
+    if abs(rise) <= PACING.free_rise:
+        assert factor == 1.0

@@ -1,0 +1,94 @@
+"""A swing over ground that stands out is lifted, over stairs, curbs, beams and boxes; on a plane it is not changed."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from humanwalk.body.contact import SoleExtent
+from humanwalk.numerics.scalars import clip, quintic_blend
+from humanwalk.terrain import Course, Plane, highest_along
+from humanwalk.terrain.rough import Rough
+from humanwalk.terrain.steps import Curb, Obstacle, Stairs
+from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.swing_clearance import INTERVALS, Clearance, ClearanceParameters, clearance
+
+SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
+LAW = ClearanceParameters()
+LIFT = (0.02, 0.1, 0.15, 0.2, 0.2, 0.1, 0.05)
+
+
+def sole_above_ground(course: Course, start: complex, end: complex) -> float:
+    """Least height [m] of a level sole above the ground between a tenth and nine tenths of its swing."""
+    feet = Foothold.on(course, start), Foothold.on(course, end)
+    added = clearance(course, *feet, 0.0, SOLE, LAW)
+    least = np.inf
+    for s in np.linspace(0.1, 0.9, 25):
+        share = quintic_blend(clip((s - added.depart) / (added.arrive - added.depart), 0.0, 1.0))[0]
+        ankle = start + share * (end - start)
+        height = feet[0].ground + quintic_blend(s)[0] * (feet[1].ground - feet[0].ground) + added.at(s).value
+        path = np.array([(ankle.real + x, ankle.imag) for x in (-SOLE.back, SOLE.front)])
+        least = min(least, height - highest_along(course, path, 1e-6))
+    return least
+
+
+@given(st.floats(-0.17, 0.17), st.floats(-0.1, 0.1), st.floats(0.1, 0.9))
+def test_on_a_plane_nothing_is_added(slope: float, cross_slope: float, length: float) -> None:
+    plane = Plane(slope=slope, cross_slope=cross_slope)
+    feet = Foothold.on(plane, 0.1j), Foothold.on(plane, length + 0.1j)
+    assert clearance(plane, *feet, 0.0, SOLE, LAW) == Clearance()
+
+
+STAIRS = {direction: Course(pieces=(Stairs(rise=0.185, tread=0.28, direction=direction, number=9),), run_up=0.5)
+          for direction in ("up", "down")}  # fmt: skip
+
+
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_two_treads_of_stairs_are_cleared(direction: str) -> None:
+    ankle = 0.5 + 0.28 * 2 + 0.062
+    assert sole_above_ground(STAIRS[direction], complex(ankle), complex(ankle + 0.56)) > 0.0
+
+
+def test_beside_a_riser_the_foot_rises_first_and_below_an_edge_it_sinks_last() -> None:
+    ankle = 0.5 + 0.28 * 2 + 0.062
+    for direction, departs, arrives in (("up", LAW.rising, 1.0), ("down", 0.0, 1.0 - LAW.sinking)):
+        course = STAIRS[direction]
+        feet = Foothold.on(course, complex(ankle)), Foothold.on(course, complex(ankle + 0.56))
+        added = clearance(course, *feet, 0.0, SOLE, LAW)
+        assert (added.depart, added.arrive) == (departs, arrives)
+
+
+@settings(max_examples=20)
+@given(st.floats(0.02, 0.25), st.floats(0.25, 0.7))
+def test_a_beam_between_the_footholds_is_cleared_by_the_margin(height: float, before: float) -> None:
+    course = Course(pieces=(Obstacle(height=height),), run_up=0.5)
+    start = complex(1.45 - before)
+    end = complex(1.55 + SOLE.back + 0.05)
+    assert sole_above_ground(course, start, end) > -1e-9
+    feet = Foothold.on(course, start), Foothold.on(course, end)
+    assert max(clearance(course, *feet, 0.0, SOLE, LAW).lift) == pytest.approx(height + LAW.margin, abs=0.01)
+
+
+@settings(max_examples=20)
+@given(st.floats(0.02, 0.2), st.sampled_from(["up", "down"]))
+def test_a_curb_is_cleared(height: float, direction: str) -> None:
+    course = Course(pieces=(Curb(height=height, direction=direction),), run_up=0.5)  # type: ignore[arg-type]
+    assert sole_above_ground(course, complex(0.2), complex(0.75)) > -LAW.tolerance
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 1000))
+def test_boxes_under_the_way_are_cleared(seed: int) -> None:
+    course = Course(pieces=(Rough(length=4.0, height=0.05, seed=seed),), run_up=0.5)
+    assert sole_above_ground(course, 1.062 + 0.1j, 1.862 + 0.1j) > -LAW.tolerance
+
+
+def test_the_lift_has_rates_that_are_derivatives_and_rests_at_both_ends() -> None:
+    added, h = Clearance(LIFT), 1e-6
+    for progress in (0.1, 0.3, 0.6, 0.9):
+        before, here, after = (added.at(progress + d) for d in (-h, 0.0, h))
+        assert (after.value - before.value) / (2 * h) == pytest.approx(here.rate, abs=1e-5)
+        assert (after.rate - before.rate) / (2 * h) == pytest.approx(here.acceleration, abs=1e-4)
+    for end in (0.0, 1.0):
+        assert added.at(end)[:2] == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert [added.at(k / INTERVALS).value for k in range(1, INTERVALS)] == pytest.approx(LIFT)
