@@ -1,5 +1,6 @@
 """The controller that balances: step planner and whole-body program, no external force."""
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -107,10 +108,11 @@ class BalancedController:
         return np.where(foot, gains.foot_stiffness, 0.0), np.where(foot, gains.foot_damping, gains.damping)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
-        """Standing on bent legs."""
+        """Standing on bent legs, the soles parallel to the ground along x."""
+        slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
         angles = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
         for leg in LEGS.values():
-            angles |= {leg.hip_flexion: START_FLEXION, leg.knee: 2.0 * START_FLEXION, leg.ankle: START_FLEXION}
+            angles |= {leg.hip_flexion: START_FLEXION, leg.knee: 2.0 * START_FLEXION, leg.ankle: START_FLEXION + slope}
         return StartPosture(angles)
 
     def add_to(self, world: World) -> Command:

@@ -124,7 +124,8 @@ def friction_edges(mu: Array) -> Array:
     edges[:, :, 2] = 1.0
     edges[:, 0, 0] = edges[:, 2, 1] = mu
     edges[:, 1, 0] = edges[:, 3, 1] = -mu
-    return FORCE_UNIT * edges
+    edges *= FORCE_UNIT
+    return edges
 
 
 class Contacts(NamedTuple):

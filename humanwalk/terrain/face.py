@@ -55,6 +55,10 @@ class Face(NamedTuple):
         """Height of the lowest corner [m]."""
         return float(self.corners[:, 2].min())
 
+    def covers_as(self, other: "Face") -> bool:
+        """Whether another face has the same rectangle: the same face, perhaps with another belief about its plane."""
+        return self.lower == other.lower and self.upper == other.upper
+
     def height(self, xy: Array) -> Array:
         """Height of the plane [m] at points xy [m], within the face or not; shape (...) for (..., 2)."""
         height: Array = self.intercept + xy @ np.array(self.gradient)

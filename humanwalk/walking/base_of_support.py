@@ -9,6 +9,10 @@ from dataclasses import dataclass
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 
+CORRECTING = 0.7
+"""Share of the distance of the nominal zero-moment point from the edge of the base of support that is there for
+corrections (our choice)."""
+
 
 @dataclass(frozen=True)
 class BaseOfSupport:
@@ -35,6 +39,16 @@ class BaseOfSupport:
     lateral_weight: float = quantity(3.0, "", 0.1, 30.0)
     """Weight of a sideways error relative to a forward error between two feet: the next step corrects a forward error
     with any foothold, a sideways error only with one farther out."""
+
+    def correctable(self, error: complex, growth: float) -> complex:
+        """The part of an error that the zero-moment point can correct by the end of the step [m].
+
+        Args:
+            error: Of the DCM at the end of the step, along and across the heading [m].
+            growth: Displacement of the DCM at the end of the step by a unit displacement of the zero-moment point.
+        """
+        along, across = CORRECTING * growth * (self.center + self.back), CORRECTING * growth * self.half_width
+        return complex(clip(error.real, -along, along), clip(error.imag, -across, across))
 
     def center_of(self, ankle: complex, heading: float) -> complex:
         """The nominal zero-moment point on a foot."""

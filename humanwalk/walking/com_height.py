@@ -13,6 +13,9 @@ heel and ball."""
 HEEL_RISE = 0.03
 """Length that a leg gains when its heel rises [m] (our choice)."""
 
+RISE_SHARE = 0.6
+"""Share of the height of a step by which the longer leg limits the center of mass (our choice)."""
+
 FREE_SPREAD = 0.1
 """The same sideways [m]: about half the distance of the hips."""
 
@@ -60,13 +63,13 @@ class ComHeight:
         """Largest height of the center of mass above the support [m] in a step up or down.
 
         At touchdown the support is half-way between the feet: the leg behind, or the one ahead in a step down, is
-        longer by half of the rise.
+        longer by half of the rise, and somewhat more because it is not below the body.
 
         Args:
             rise: Height of the next foothold above the stance foot [m].
             standing: Height of the center of mass with straight legs [m].
         """
-        return standing + HEEL_RISE - 0.5 * abs(rise)
+        return standing + HEEL_RISE - RISE_SHARE * abs(rise)
 
     def approach(self, height: float, rate: float, goal: float, max_height: float) -> float:
         """Acceleration of the mean height [m/s2], critically damped.

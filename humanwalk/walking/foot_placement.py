@@ -29,6 +29,10 @@ MIN_OWN_SIDE_OFFSET = 0.05
 FILTER_TIME = 0.02
 """Time constant of the low-pass filter of the foothold [s]."""
 
+RISE_FILTER_TIME = 0.06
+"""Time constant of the low-pass filter of the heights of a swing whose foothold moves to another face [s]: a leg that
+is lifted faster throws the body up."""
+
 FREEZE_TIME = 0.04
 """The foothold is constant for this long before touchdown [s]."""
 

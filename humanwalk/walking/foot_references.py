@@ -19,13 +19,18 @@ TOES_STRAIGHT = 0.4
 (docs/balance.md)."""
 
 
-def rollover_speed(state: PlannerState, step: complex, command: Command, parameters: StepPlannerParameters) -> float:
-    """Forward speed for the rollover of a foot [m/s]: the commanded one, or less if the step [m] is short or backward.
+def rollover_speed(
+    state: PlannerState, start: Foothold, goal: Foothold, command: Command, parameters: StepPlannerParameters
+) -> float:
+    """Forward speed for the rollover of a foot in the step from `start` to `goal` [m/s].
 
-    A foot that is steep when it leaves the ground below the body catches the ground with its toes.
+    It is the commanded one, or less if the step is short, backward or onto higher ground. A foot that is steep when it
+    leaves the ground below the body catches the ground with its toes, and a slow walker on its toes cannot move the
+    zero-moment point back.
     """
-    length = (step / state.direction).real
-    return min(command.forward, SHORT_STEP * length / state.timing.step)
+    length = ((goal.position - start.position) / state.direction).real
+    share = parameters.swing.rolling_share(max(start.step_to(goal), 0.0))
+    return share * min(command.forward, SHORT_STEP * length / state.timing.step)
 
 
 def stance_rollover_speed(
@@ -33,7 +38,7 @@ def stance_rollover_speed(
 ) -> float | None:
     """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
     timing, rockers = state.timing, parameters.rockers
-    speed = rollover_speed(state, swing.foothold.position - state.stance_foot.position, command, parameters)
+    speed = rollover_speed(state, state.stance_foot, swing.foothold, command, parameters)
     return speed if state.elapsed > timing.step - rockers.ball and rockers.heel_rises(speed) else None
 
 
@@ -56,7 +61,7 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
     """Reference of the foot that leaves the ground at the end of double support."""
     timing, rockers = state.timing, parameters.rockers
     load, R_WS = max(1.0 - state.elapsed / timing.double_support, 0.0), state.old_foot.R_WS
-    speed = rollover_speed(state, state.stance_foot.position - state.old_foot.position, command, parameters)
+    speed = rollover_speed(state, state.old_foot, state.stance_foot, command, parameters)
     if not rockers.heel_rises(speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
     return rockers.over_ball(rockers.ball + state.elapsed, timing.double_support, load, state.old_heading, R_WS, speed)

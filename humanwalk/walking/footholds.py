@@ -19,8 +19,8 @@ from humanwalk.quantity import quantity
 from humanwalk.terrain.face import ENDLESS, Face
 from humanwalk.terrain.terrain import Ground
 
-SAME_FACE = 0.05
-"""Distance by which another face must be nearer than the one that the foot is on its way to [m]; ours."""
+SAME_FACE = 0.1
+"""Distance by which another face must be nearer than the one that the foot is on its way to [m] (our choice)."""
 
 FREE = 1e-3
 """Height above a face up to which ground beside it is part of it [m]."""
@@ -43,7 +43,7 @@ class FootholdSearch:
     """Largest difference in height between the feet."""
 
     distance: float = quantity(0.45, "m", 0.0, 1.0)
-    """Largest distance from the desired foothold, along x and along y."""
+    """Largest distance from the expected foothold, along x and along y."""
 
     lateral_weight: float = quantity(2.0, "", 0.1, 10.0)
     """Weight of a sideways distance from the desired foothold relative to a forward one."""
@@ -121,6 +121,7 @@ def nearest_foothold(
     search: FootholdSearch,
     is_reachable: Callable[[complex, float], bool],
     current: Face | None = None,
+    expected: complex | None = None,
 ) -> Foothold:
     """Return the foothold nearest to a desired one with the whole sole on one face.
 
@@ -132,20 +133,24 @@ def nearest_foothold(
         search: Which faces are footholds.
         is_reachable: Whether a foot can go to a position at a height [m].
         current: Face that the foot is on its way to; it is preferred.
+        expected: What will be desired when the foot lands, if that differs: it decides on the face.
 
     Returns:
         The foothold; the desired place itself where none is in reach.
     """
     here = Foothold.on(ground, desired)
-    if places_on(here.face, desired, yaw, sole, search.edge_margin) == [desired] and is_reachable(desired, here.ground):
+    is_current = current is None or here.face.covers_as(current)
+    has_room = places_on(here.face, desired, yaw, sole, search.edge_margin) == [desired]
+    if is_current and has_room and is_reachable(desired, here.ground):
         return here
+    expected = desired if expected is None else expected
     u, best, least = cmath.exp(1j * yaw), here, float("inf")
-    for face in ground.faces_near(np.array((desired.real, desired.imag)), search.distance):
+    for face in ground.faces_near(np.array((expected.real, expected.imag)), search.distance):
         places = places_on(face, desired, yaw, sole, search.edge_margin)
         for place in places:
-            off = (place - desired) / u
+            off = (place - expected) / u
             distance = abs(complex(off.real, search.lateral_weight * off.imag)) - (
-                SAME_FACE if face == current else 0.0
+                SAME_FACE if current is not None and face.covers_as(current) else 0.0
             )
             height = _height(face, place)
             if distance >= least or max(abs(off.real), abs(off.imag)) > search.distance:

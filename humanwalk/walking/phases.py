@@ -3,6 +3,8 @@
 STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
 """
 
+import numpy as np
+
 from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
 from humanwalk.terrain.terrain import Ground
@@ -15,6 +17,7 @@ from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
+from humanwalk.walking.swing_clearance import TIMES
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import BodyState, Phase
 from humanwalk.walking.zmp_reference import desired_gait
@@ -82,6 +85,7 @@ class PhaseTransitions:
         foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
         toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
+        sole = self._footholds.sole
         profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
         return state._replace(
@@ -89,9 +93,10 @@ class PhaseTransitions:
             swing=Swing(
                 motion=PlanarMotion(foot.position, foot.velocity, acceleration),
                 profile=profile,
-                foothold=Foothold(foot.position, state.old_foot.ground, state.old_foot.face),
+                foothold=Foothold(foot.position, state.old_foot.ground, goal.face),
                 start_yaw=foot.yaw,
                 start=foot.position,
+                ordinary=np.array([profile.lowest(s, flat_height, sole) for s in TIMES.tolist()]),
                 start_toes=foot_behind(state, command, self._parameters).toes[0],
             ),
         )

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
+from humanwalk.numerics import Array
 from humanwalk.terrain.plane import Plane
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.commanded_path import CommandedPath
@@ -31,6 +32,7 @@ class Swing(NamedTuple):
         start: Ankle over the level plane at lift-off [m].
         rise: Height of the ground at the foothold above that at lift-off [m].
         clearance: What the swing adds to clear the ground.
+        ordinary: Height of the lowest point of the sole without that, at `TIMES` [m].
     """
 
     motion: PlanarMotion
@@ -41,6 +43,7 @@ class Swing(NamedTuple):
     start: complex = 0.0
     rise: float = 0.0
     clearance: Clearance = Clearance()
+    ordinary: Array | float = 0.0
 
 
 class PlannerState(NamedTuple):

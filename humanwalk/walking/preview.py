@@ -44,7 +44,7 @@ class Pacing:
     free_rise: float = quantity(0.07, "m", 0.0, 0.5)
     """Difference in height between a foot's last and next foothold up to which a step has the ordinary duration."""
 
-    slowing: float = quantity(1.2, "1/m", 0.0, 10.0)
+    slowing: float = quantity(1.8, "1/m", 0.0, 10.0)
     """Increase of the duration per difference in height beyond that, relative to the ordinary one."""
 
     friction_use: float = quantity(0.8, "", 0.1, 1.0)
@@ -122,6 +122,7 @@ class FootholdPlanner:
         side: Side,
         direction: complex,
         current: Face | None = None,
+        expected: complex | None = None,
     ) -> Foothold:
         """The nearest foothold that the other foot reaches from a stance foot; see `nearest_foothold`.
 
@@ -133,6 +134,7 @@ class FootholdPlanner:
             side: Its side.
             direction: Its heading, as a unit vector.
             current: Face that the foot is on its way to.
+            expected: Desired position when the foot lands [m].
         """
 
         def is_reachable(place: complex, height: float) -> bool:
@@ -143,7 +145,7 @@ class FootholdPlanner:
                 and OUTWARD[side] * local.imag >= self.placement.min_step_width(local.real) - 1e-9
             )
 
-        return nearest_foothold(ground, desired, yaw, self.sole, self.search, is_reachable, current)
+        return nearest_foothold(ground, desired, yaw, self.sole, self.search, is_reachable, current, expected)
 
     def preview(self, ground: Ground, stance: Foothold, side: Side, heading: float, gait: PeriodicGait) -> Preview:
         """The next footholds of a gait.

@@ -16,7 +16,7 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
-from humanwalk.walking.foot_placement import FILTER_TIME, FREEZE_TIME, foothold_gain
+from humanwalk.walking.foot_placement import FILTER_TIME, FREEZE_TIME, RISE_FILTER_TIME, foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
@@ -143,7 +143,8 @@ class StepPlanner:
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
         desired = gait.displacement.on(state.stance) + preview.first_move / state.direction
-        desired += foothold_gain(self.frequency, timing.double_support) * error
+        sensitivity = foothold_gain(self.frequency, timing.double_support)
+        desired += sensitivity * error
 
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))
@@ -163,7 +164,9 @@ class StepPlanner:
             remaining = (timing.step - state.elapsed) / phase_rate
             com = com_after(remaining, body.com, dcm, zmp, self.frequency)
             goal = state.world(placement.near_com(reachable, state.local(com)))
-            swing = self._advance_swing(state, swing, goal, remaining, command)
+            growth = math.expm1(self.frequency * (timing.step - state.elapsed))
+            expected = goal - sensitivity * p.support.correctable(error, growth) * state.direction
+            swing = self._advance_swing(state, swing, goal, expected, remaining, command)
             foothold = swing.foothold
             max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
             other_foot = swinging_foot(state, swing, phase_rate, p)
@@ -175,9 +178,24 @@ class StepPlanner:
         return next_state, self._reference(state, body, balance, com_height, support, feet, foothold.position)
 
     def _advance_swing(
-        self, state: PlannerState, swing: Swing, goal: complex, remaining: float, command: Command
+        self,
+        state: PlannerState,
+        swing: Swing,
+        goal: complex,
+        expected: complex,
+        remaining: float,
+        command: Command,
     ) -> Swing:
-        """The swinging foot one control period later, on its way to a foothold [m] for the remaining time [s]."""
+        """The swinging foot one control period later.
+
+        Args:
+            state: State of the planner.
+            swing: The swinging foot.
+            goal: Desired foothold [m].
+            expected: Foothold that will be desired at touchdown [m].
+            remaining: Time until touchdown [s].
+            command: The command.
+        """
         timing, placement, law = state.timing, self.parameters.placement, self.parameters.swing
         foothold, rise, added = swing.foothold, swing.rise, swing.clearance
         if timing.step - state.elapsed > FREEZE_TIME:
@@ -185,12 +203,14 @@ class StepPlanner:
             smoothing = 1.0 if is_first else self._period / (self._period + FILTER_TIME)
             yaw = state.heading + state.turn * timing.step
             place = self._footholds.nearest(
-                state.ground, goal, yaw, state.stance_foot, state.stance, state.direction, swing.foothold.face
+                state.ground, goal, yaw, state.stance_foot, state.stance, state.direction, swing.foothold.face, expected
             )
-            desired = clearance(state.ground, state.old_foot, place, yaw, self._sole, self.parameters.clearance)
-            added = added.filtered(desired, smoothing)
+            feet = (state.old_foot, place)
+            desired = clearance(state.ground, *feet, yaw, self._sole, self.parameters.clearance, swing.ordinary)
+            slow = 1.0 if is_first else self._period / (self._period + RISE_FILTER_TIME)
+            added = added.filtered(desired, slow)
             position = foothold.position + smoothing * (place.position - foothold.position)
-            rise += smoothing * (place.ground - state.old_foot.ground - rise)
+            rise += slow * (place.ground - state.old_foot.ground - rise)
             foothold = place._replace(position=position)
         progress = timing.swing_progress(state.elapsed)
         rate = (1.0 - progress) / max(remaining, 1e-6)

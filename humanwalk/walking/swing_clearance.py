@@ -21,11 +21,17 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PiecewiseCubic, ScalarMotion
 
-INTERVALS = 8
+INTERVALS = 16
 """Number of equal parts of the swing at whose ends the additional lift is given."""
 
-SAMPLES = 8 * INTERVALS + 1
+SAMPLES = 4 * INTERVALS + 1
 """Number of places of the ankle, and of times of the swing, that are tried."""
+
+TIMES = np.linspace(0.0, 1.0, SAMPLES)
+"""Progress of the swing at which the ground is tried."""
+
+ENDING = 0.25
+"""Part of the swing before touchdown in which the margin decreases."""
 
 SPACING = 0.03
 """Largest distance of two points under the sole [m]."""
@@ -41,13 +47,13 @@ class ClearanceParameters:
     tolerance: float = quantity(0.005, "m", 0.0, 0.05)
     """Height up to which nothing stands out: an ordinary swing clears it."""
 
-    nearness: float = quantity(0.06, "m", 0.0, 0.3)
+    nearness: float = quantity(0.12, "m", 0.0, 0.3)
     """Distance from its footholds up to which a foot is beside a riser, or below an edge."""
 
     rising: float = quantity(0.25, "", 0.0, 0.45)
     """Part of the swing in which a foot beside a riser only rises."""
 
-    sinking: float = quantity(0.2, "", 0.0, 0.45)
+    sinking: float = quantity(0.25, "", 0.0, 0.45)
     """Part of the swing in which a foot below an edge only sinks."""
 
 
@@ -76,7 +82,13 @@ class Clearance(NamedTuple):
 
 
 def clearance(
-    ground: Ground, start: Foothold, goal: Foothold, yaw: float, sole: SoleExtent, law: ClearanceParameters
+    ground: Ground,
+    start: Foothold,
+    goal: Foothold,
+    yaw: float,
+    sole: SoleExtent,
+    law: ClearanceParameters,
+    ordinary: Array | float = 0.0,
 ) -> Clearance:
     """Return what a swing from one foothold to another has to add.
 
@@ -87,6 +99,7 @@ def clearance(
         yaw: Heading of the foot [rad].
         sole: Extent of the sole.
         law: Parameters.
+        ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
     """
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
@@ -95,17 +108,24 @@ def clearance(
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
     # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
     least = law.margin + near * abs(goal.ground - start.ground)
-    depart = law.rising if above[share <= near].max() > least else 0.0
-    arrive = 1.0 - law.sinking if above[share >= 1.0 - near].max() > least else 1.0
+    depart, arrive = 0.0, 1.0
+    if above[share <= near].max() > least:
+        depart, above[share <= near] = law.rising, above[share <= near].max()
+    if above[share >= 1.0 - near].max() > least:
+        arrive, above[share >= 1.0 - near] = 1.0 - law.sinking, above[share >= 1.0 - near].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
-    times = np.linspace(0.0, 1.0, SAMPLES)
-    moved = quintic_blend(np.clip((times - depart) / (arrive - depart), 0.0, 1.0))[0]
-    needed = np.interp(moved, share, above)
-    needed = np.where(needed > law.tolerance, needed + law.margin, 0.0)
-    needed *= quintic_blend(np.clip(times / depart, 0.0, 1.0))[0] if depart > 0.0 else 1.0
-    needed *= quintic_blend(np.clip((1.0 - times) / (1.0 - arrive), 0.0, 1.0))[0] if arrive < 1.0 else 1.0
-    lift = [needed.max(where=_is_around(times, knot, depart, arrive), initial=0.0) for knot in _knots()]
-    return Clearance(tuple(float(height) for height in lift), depart, arrive)
+    moved = quintic_blend(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))[0]
+    # The ground of an ordinary swing rises with the progress, not with the way.
+    ahead = (quintic_blend(TIMES)[0] - moved) * (goal.ground - start.ground)
+    margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
+    stands_out = np.interp(moved, share, above)
+    needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), 0.0)
+    needed *= quintic_blend(np.clip(TIMES / depart, 0.0, 1.0))[0] if depart > 0.0 else 1.0
+    needed *= quintic_blend(np.clip((1.0 - TIMES) / (1.0 - arrive), 0.0, 1.0))[0] if arrive < 1.0 else 1.0
+    lift = np.array([needed.max(where=_is_around(knot, depart, arrive), initial=0.0) for knot in _knots()])
+    # The foot does not sink between two heights.
+    lift = np.minimum(np.maximum.accumulate(lift), np.maximum.accumulate(lift[::-1])[::-1])
+    return Clearance(tuple(lift.tolist()), depart, arrive)
 
 
 def _knots() -> Array:
@@ -113,16 +133,16 @@ def _knots() -> Array:
     return np.linspace(0.0, 1.0, INTERVALS + 1)[1:-1]
 
 
-def _is_around(times: Array, knot: float, depart: float, arrive: float) -> Mask:
-    """Whether the lift at a knot counts for a time: in both intervals beside it, but not across depart or arrive."""
+def _is_around(knot: float, depart: float, arrive: float) -> Mask:
+    """Whether a knot counts for each of `TIMES`: in both intervals beside it, but not across depart or arrive."""
     width = 1.0 / INTERVALS + 1e-9
     low = knot - width if knot >= depart else knot - 1e-9
     high = knot + width if knot <= arrive else knot + 1e-9
-    around: Mask = (times >= low) & (times <= high)
+    around: Mask = (low <= TIMES) & (high >= TIMES)
     if knot < depart:
-        around &= times <= knot + 1e-9
+        around &= knot + 1e-9 >= TIMES
     if knot > arrive:
-        around &= times >= knot - 1e-9
+        around &= knot - 1e-9 <= TIMES
     return around
 
 
@@ -143,4 +163,5 @@ def height_above_plane(
     plane = (1.0 - share[:, None]) * start.face.height(xy) + share[:, None] * goal.face.height(xy)
     above: Array = (ground.height(xy) - plane).max(axis=1)
     # An edge between two places counts for both.
-    return np.maximum(above, np.maximum(np.append(above[1:], above[-1]), np.append(above[0], above[:-1])))
+    beside: Array = np.maximum(np.append(above[1:], above[-1]), np.append(above[0], above[:-1]))
+    return np.maximum(above, beside)

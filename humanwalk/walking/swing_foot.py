@@ -1,9 +1,11 @@
 """Trajectory of the swinging foot: over the level plane to a foothold that may move; height and pitch by splines."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
@@ -80,7 +82,11 @@ class SwingProfile:
 
     @staticmethod
     def from_toe_off(
-        foot: FootState, flat_height: float, toe_up: float, duration: float, parameters: SwingParameters
+        foot: FootState,
+        flat_height: float,
+        toe_up: float,
+        duration: float,
+        parameters: SwingParameters,
     ) -> "SwingProfile":
         """The profile that continues the motion of a foot at toe-off.
 
@@ -102,6 +108,12 @@ class SwingProfile:
         tangents[-1] = -parameters.landing_sink_rate * quarter, 0.0
         coefficients = CubicHermite(points, tangents).coefficients.tolist()
         return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients))
+
+    def lowest(self, progress: float, flat_height: float, sole: SoleExtent) -> float:
+        """Height of the lowest point of the sole above the ground [m]; see `from_toe_off`."""
+        height, pitch = self.at(progress)
+        sine = math.sin(pitch.value)
+        return height.value - flat_height - max(sole.front * sine, -sole.back * sine)
 
     def at(self, progress: float) -> tuple[ScalarMotion, ScalarMotion]:
         """Height and pitch with their derivatives by the progress, which is clipped to [0, 1]."""

@@ -16,7 +16,7 @@ from humanwalk.control.whole_body_qp import JOINT_LIMIT_STIFFNESS, Posture, Whol
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
-from humanwalk.walking.motions import PlanarMotion
+from humanwalk.walking.motions import PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
 PARAMETERS = WholeBodyParameters()
@@ -136,9 +136,8 @@ def test_a_foot_in_the_air_carries_no_force(dynamics: BodyDynamics, qp: WholeBod
         FootTask.SWING,
         0.0,
         0.0,
-        PlanarMotion(complex(ankle[0], ankle[1])),
-        (0.15, 0.0, 0.0),  # type: ignore[arg-type]
-        (0.0, 0.0, 0.0),  # type: ignore[arg-type]
+        position=PlanarMotion(complex(ankle[0], ankle[1])),
+        height=ScalarMotion(0.15),
     )
     solution = qp.solve(body, reference_for(body, zmp=0.02 + 0.0875j, right=swing), rest(qp))
     assert solution.forces[:6] == pytest.approx(np.zeros((6, 3)))

@@ -63,7 +63,8 @@ def test_the_foot_behind_is_unloaded_in_double_support(fraction: float) -> None:
 def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_steps(
     forward: float, length: float
 ) -> None:
-    speed = rollover_speed(state_at(0.0), complex(length, 0.2), Command(forward), PARAMETERS)
+    goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
+    speed = rollover_speed(state_at(0.0), OLD, goal, Command(forward), PARAMETERS)
     assert speed <= forward
     if length <= 0.0:
         assert speed <= 0.0
@@ -89,3 +90,10 @@ def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progr
         change = getattr(after, name).value - getattr(before, name).value
         assert change / (2.0 * h) == pytest.approx(getattr(here, name).rate, abs=1e-3)
     assert (after.toes[0] - before.toes[0]) / (2.0 * h) == pytest.approx(here.toes[1], abs=1e-3)
+
+
+def test_before_a_step_onto_higher_ground_the_heel_stays_down() -> None:
+    level, higher, lower = (rollover_speed(state_at(0.0), OLD, Foothold(0.5 + 0.1j, ground), WALK, PARAMETERS)
+                            for ground in (0.0, 0.18, -0.18))  # fmt: skip
+    assert higher == 0.0
+    assert lower == level > 0.0
