@@ -59,7 +59,7 @@ class ComHeight:
         sideways = max(abs(reach.imag) - FREE_SPREAD, 0.0)
         return standing - leg + math.sqrt(max(leg**2 - forward**2 - sideways**2, 0.0))
 
-    def max_for_step(self, rise: float, standing: float) -> float:
+    def max_for_step(self, rise: float, rolling: float, standing: float) -> float:
         """Largest height of the center of mass above the support [m] in a step up or down.
 
         At touchdown the support is half-way between the feet: the leg behind, or the one ahead in a step down, is
@@ -67,9 +67,10 @@ class ComHeight:
 
         Args:
             rise: Height of the next foothold above the stance foot [m].
+            rolling: Share of the ordinary heel-off before touchdown.
             standing: Height of the center of mass with straight legs [m].
         """
-        return standing + HEEL_RISE - RISE_SHARE * abs(rise)
+        return standing + rolling * HEEL_RISE - RISE_SHARE * abs(rise)
 
     def approach(self, height: float, rate: float, goal: float, max_height: float) -> float:
         """Acceleration of the mean height [m/s2], critically damped.

@@ -33,6 +33,9 @@ RISE_FILTER_TIME = 0.06
 """Time constant of the low-pass filter of the heights of a swing whose foothold moves to another face [s]: a leg that
 is lifted faster throws the body up."""
 
+FACE_FREEZE_TIME = 0.15
+"""The face of the foothold does not change for this long before touchdown [s]."""
+
 FREEZE_TIME = 0.04
 """The foothold is constant for this long before touchdown [s]."""
 

@@ -24,13 +24,20 @@ def rollover_speed(
 ) -> float:
     """Forward speed for the rollover of a foot in the step from `start` to `goal` [m/s].
 
-    It is the commanded one, or less if the step is short, backward or onto higher ground. A foot that is steep when it
-    leaves the ground below the body catches the ground with its toes, and a slow walker on its toes cannot move the
-    zero-moment point back.
+    It is the commanded one, or less if the step is short or backward. A foot that is steep when it leaves the ground
+    below the body catches the ground with its toes.
     """
     length = ((goal.position - start.position) / state.direction).real
-    share = parameters.swing.rolling_share(max(start.step_to(goal), 0.0))
-    return share * min(command.forward, SHORT_STEP * length / state.timing.step)
+    return min(command.forward, SHORT_STEP * length / state.timing.step)
+
+
+def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
+    """Time from heel-off to touchdown of the other foot in the step from `start` to `goal` [s].
+
+    Before a step up or down the heel stays on the ground: a slow walker on its toes cannot move the zero-moment point
+    back.
+    """
+    return parameters.rockers.ball * parameters.swing.rolling_share(start.step_to(goal))
 
 
 def stance_rollover_speed(
@@ -39,7 +46,8 @@ def stance_rollover_speed(
     """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
     timing, rockers = state.timing, parameters.rockers
     speed = rollover_speed(state, state.stance_foot, swing.foothold, command, parameters)
-    return speed if state.elapsed > timing.step - rockers.ball and rockers.heel_rises(speed) else None
+    lead = heel_off_lead(state.stance_foot, swing.foothold, parameters)
+    return speed if state.elapsed > timing.step - lead and rockers.heel_rises(speed) else None
 
 
 def stance_foot(
@@ -51,10 +59,11 @@ def stance_foot(
     if state.steps > 0 and state.elapsed < rockers.heel:
         return rockers.over_heel(state.heading, R_WS)
     speed = stance_rollover_speed(state, swing, command, parameters) if swing is not None else None
-    if speed is None:
+    if swing is None or speed is None:
         return FootReference(FootTask.FLAT, 1.0, state.heading, R_WS)
-    since = state.elapsed - (timing.step - rockers.ball)
-    return rockers.over_ball(since, timing.double_support, 1.0, state.heading, R_WS, speed)
+    lead = heel_off_lead(state.stance_foot, swing.foothold, parameters)
+    since, duration = state.elapsed - (timing.step - lead), lead + timing.double_support
+    return rockers.over_ball(since, duration, 1.0, state.heading, R_WS, speed)
 
 
 def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
@@ -64,7 +73,9 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
     speed = rollover_speed(state, state.old_foot, state.stance_foot, command, parameters)
     if not rockers.heel_rises(speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
-    return rockers.over_ball(rockers.ball + state.elapsed, timing.double_support, load, state.old_heading, R_WS, speed)
+    lead = heel_off_lead(state.old_foot, state.stance_foot, parameters)
+    duration = lead + timing.double_support
+    return rockers.over_ball(lead + state.elapsed, duration, load, state.old_heading, R_WS, speed)
 
 
 def swinging_foot(

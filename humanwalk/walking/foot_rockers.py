@@ -37,19 +37,18 @@ class FootRockers:
         return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS)
 
     def over_ball(
-        self, since: float, double_support: float, load: float, yaw: float, R_WS: Array, speed: float
+        self, since: float, duration: float, load: float, yaw: float, R_WS: Array, speed: float
     ) -> FootReference:
         """Reference of a foot after heel-off.
 
         Args:
             since: Time since heel-off [s].
-            double_support: Time from the other foot's touchdown to toe-off [s].
+            duration: Time from heel-off to toe-off [s].
             load: See FootReference.
             yaw: Yaw of the foot [rad].
             R_WS: Axes of the ground under the foot.
             speed: Forward speed [m/s].
         """
-        duration = self.ball + double_support
         final = self.pitch * clip(speed / FULL_PITCH_SPEED, 0.0, 1.0)
         s = min(since / duration, 1.0)
         pitch = ScalarMotion(final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)

@@ -39,7 +39,7 @@ class FootholdSearch:
     edge_margin: float = quantity(0.02, "m", 0.0, 0.1)
     """Distance of the sole from the edges of its face, where the face is long enough."""
 
-    max_rise: float = quantity(0.3, "m", 0.0, 0.6)
+    max_rise: float = quantity(0.25, "m", 0.0, 0.6)
     """Largest difference in height between the feet."""
 
     distance: float = quantity(0.45, "m", 0.0, 1.0)
@@ -47,6 +47,10 @@ class FootholdSearch:
 
     lateral_weight: float = quantity(2.0, "", 0.1, 10.0)
     """Weight of a sideways distance from the desired foothold relative to a forward one."""
+
+    height_weight: float = quantity(0.25, "", 0.0, 10.0)
+    """Weight of the difference in height from the stance foot relative to a forward distance, so that the
+    walker does not take two low steps of a stair at once."""
 
 
 class Foothold(NamedTuple):
@@ -122,6 +126,8 @@ def nearest_foothold(
     is_reachable: Callable[[complex, float], bool],
     current: Face | None = None,
     expected: complex | None = None,
+    is_final: bool = False,
+    level: float = 0.0,
 ) -> Foothold:
     """Return the foothold nearest to a desired one with the whole sole on one face.
 
@@ -134,6 +140,8 @@ def nearest_foothold(
         is_reachable: Whether a foot can go to a position at a height [m].
         current: Face that the foot is on its way to; it is preferred.
         expected: What will be desired when the foot lands, if that differs: it decides on the face.
+        is_final: Whether the face does not change any more.
+        level: Height from which differences are avoided [m].
 
     Returns:
         The foothold; the desired place itself where none is in reach.
@@ -146,15 +154,18 @@ def nearest_foothold(
     expected = desired if expected is None else expected
     u, best, least = cmath.exp(1j * yaw), here, float("inf")
     for face in ground.faces_near(np.array((expected.real, expected.imag)), search.distance):
+        same = current is not None and face.covers_as(current)
+        if is_final and not same:
+            continue
         places = places_on(face, desired, yaw, sole, search.edge_margin)
         for place in places:
-            off = (place - expected) / u
-            distance = abs(complex(off.real, search.lateral_weight * off.imag)) - (
-                SAME_FACE if current is not None and face.covers_as(current) else 0.0
-            )
-            height = _height(face, place)
-            if distance >= least or max(abs(off.real), abs(off.imag)) > search.distance:
+            off, height = (place - expected) / u, _height(face, place)
+            if max(abs(off.real), abs(off.imag)) > search.distance or not is_reachable(place, height):
                 continue
-            if is_reachable(place, height) and (len(places) == 1 or has_free_ground(ground, place, face, yaw, sole)):
-                best, least = Foothold(place, height, face), distance
+            if len(places) > 1 and not has_free_ground(ground, place, face, yaw, sole):
+                continue
+            cost = abs(complex(off.real, search.lateral_weight * off.imag)) - SAME_FACE * same
+            cost += search.height_weight * abs(height - level)
+            if cost < least:
+                best, least = Foothold(place, height, face), cost
     return best

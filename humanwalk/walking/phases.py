@@ -130,16 +130,19 @@ class PhaseTransitions:
             timing=self._parameters.timing,
             ground=state.ground,
         )
-        return self._look_ahead(landed, command) if is_moving else landed
+        return self._look_ahead(landed, command, state.preview.ahead) if is_moving else landed
 
-    def _look_ahead(self, state: PlannerState, command: Command) -> PlannerState:
+    def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with duration and speed of the step that suit them."""
         gait = desired_gait(state, command, self._parameters)
-        preview = self._footholds.preview(state.ground, state.stance_foot, state.stance, state.heading, gait)
+        preview = self._footholds.preview(state.ground, state.stance_foot, state.stance, state.heading, gait, ahead)
         rise = preview.footholds[0].ground - state.old_foot.ground
         factor = self._parameters.pacing.duration_factor(rise)
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
+        # A step that takes longer is not ahead by what the gait covers in that time.
+        gained = (factor - 1.0) * gait.displacement.on(state.stance).real
+        preview = preview._replace(ahead=max(preview.ahead - gained, 0.0))
         pace = preview.pace / factor
         slower = state._replace(
             timing=state.timing.stretched(factor),

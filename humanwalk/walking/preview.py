@@ -67,11 +67,13 @@ class Preview(NamedTuple):
         footholds: The next foothold, and those after it; none in standing.
         moves: Displacements from each foothold to the next, beyond those of the gait [m]; 0 on a plane.
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
+        ahead: Distance of the next foothold ahead of its place in the gait [m]; the step after it is shorter by that.
     """
 
     footholds: tuple[Foothold, ...] = ()
     moves: tuple[complex, ...] = ()
     pace: float = 1.0
+    ahead: float = 0.0
 
     @property
     def first_move(self) -> complex:
@@ -123,6 +125,7 @@ class FootholdPlanner:
         direction: complex,
         current: Face | None = None,
         expected: complex | None = None,
+        is_final: bool = False,
     ) -> Foothold:
         """The nearest foothold that the other foot reaches from a stance foot; see `nearest_foothold`.
 
@@ -135,19 +138,27 @@ class FootholdPlanner:
             direction: Its heading, as a unit vector.
             current: Face that the foot is on its way to.
             expected: Desired position when the foot lands [m].
+            is_final: Whether the face does not change any more.
         """
+        desired_width = OUTWARD[side] * ((desired - stance.position) / direction).imag
 
         def is_reachable(place: complex, height: float) -> bool:
             local = (place - stance.position) / direction
+            # Balance may desire a step that is narrower than the legs like.
+            min_width = min(self.placement.min_step_width(local.real), desired_width)
             return (
                 abs(height - stance.ground) <= self.search.max_rise
                 and abs(local.real) <= MAX_LENGTH
-                and OUTWARD[side] * local.imag >= self.placement.min_step_width(local.real) - 1e-9
+                and OUTWARD[side] * local.imag >= min_width - 1e-9
             )
 
-        return nearest_foothold(ground, desired, yaw, self.sole, self.search, is_reachable, current, expected)
+        return nearest_foothold(
+            ground, desired, yaw, self.sole, self.search, is_reachable, current, expected, is_final, stance.ground
+        )
 
-    def preview(self, ground: Ground, stance: Foothold, side: Side, heading: float, gait: PeriodicGait) -> Preview:
+    def preview(
+        self, ground: Ground, stance: Foothold, side: Side, heading: float, gait: PeriodicGait, ahead: float = 0.0
+    ) -> Preview:
         """The next footholds of a gait.
 
         Args:
@@ -156,14 +167,15 @@ class FootholdPlanner:
             side: Its side.
             heading: Its heading [rad].
             gait: The desired gait.
+            ahead: Distance of the stance foot ahead of its place in the gait [m].
         """
         footholds, moves = [], []
-        length = desired_length = 0.0
+        length = desired_length = first_ahead = 0.0
         for _ in range(STEPS):
             direction = cmath.exp(1j * heading)
             step = gait.displacement.on(side)
             longest = self.pacing.longest_step(stance.face, self.com_height, abs(step.imag))
-            shortened = complex(clip(step.real, -longest, longest), step.imag)
+            shortened = complex(clip(step.real - ahead, -longest, longest), step.imag)
             desired = stance.position + shortened * direction
             heading += gait.turn
             foothold = self.nearest(ground, desired, heading, stance, side, direction)
@@ -171,8 +183,10 @@ class FootholdPlanner:
             footholds.append(foothold)
             length += ((foothold.position - desired) / direction + shortened).real
             desired_length += step.real
+            ahead = max(((foothold.position - desired) / direction).real, 0.0)
+            first_ahead = ahead if len(moves) == 1 else first_ahead
             stance, side = foothold, other_side(side)
         pace = 1.0
         if desired_length > STEPS * MIN_LENGTH:
             pace = clip(length / desired_length, *PACE_RANGE)
-        return Preview(tuple(footholds), tuple(moves), pace)
+        return Preview(tuple(footholds), tuple(moves), pace, first_ahead)

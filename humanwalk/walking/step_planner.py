@@ -16,17 +16,17 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
-from humanwalk.walking.foot_placement import FILTER_TIME, FREEZE_TIME, RISE_FILTER_TIME, foothold_gain
+from humanwalk.walking.foot_placement import foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
-from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
+from humanwalk.walking.motions import ScalarMotion, blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import PhaseTransitions
-from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.preview import FootholdPlanner, dcm_shift
 from humanwalk.walking.support import SupportMotion, support_motion
-from humanwalk.walking.swing_clearance import clearance
+from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
@@ -149,7 +149,10 @@ class StepPlanner:
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))
         support = support_motion(state, dcm_shift(rises, gait, self.frequency).real, self.frequency)
-        max_com_height = p.height.max_for_step(rises[0] if rises else 0.0, self._standing_com_height)
+        max_com_height = math.inf
+        if preview.footholds:
+            rolling = p.swing.rolling_share(state.stance_foot.step_to(preview.footholds[0]))
+            max_com_height = p.height.max_for_step(rises[0], rolling, self._standing_com_height)
 
         # Clock of the step and swinging foot: a foothold out of reach makes the clock run faster.
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
@@ -166,7 +169,8 @@ class StepPlanner:
             goal = state.world(placement.near_com(reachable, state.local(com)))
             growth = math.expm1(self.frequency * (timing.step - state.elapsed))
             expected = goal - sensitivity * p.support.correctable(error, growth) * state.direction
-            swing = self._advance_swing(state, swing, goal, expected, remaining, command)
+            way = SwingGoal(goal, expected, remaining)
+            swing = advanced_swing(state, swing, way, command, p, self._footholds, self._period)
             foothold = swing.foothold
             max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
             other_foot = swinging_foot(state, swing, phase_rate, p)
@@ -176,60 +180,6 @@ class StepPlanner:
         next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)
         balance = Balance(zmp, dcm, dcm_reference)
         return next_state, self._reference(state, body, balance, com_height, support, feet, foothold.position)
-
-    def _advance_swing(
-        self,
-        state: PlannerState,
-        swing: Swing,
-        goal: complex,
-        expected: complex,
-        remaining: float,
-        command: Command,
-    ) -> Swing:
-        """The swinging foot one control period later.
-
-        Args:
-            state: State of the planner.
-            swing: The swinging foot.
-            goal: Desired foothold [m].
-            expected: Foothold that will be desired at touchdown [m].
-            remaining: Time until touchdown [s].
-            command: The command.
-        """
-        timing, placement, law = state.timing, self.parameters.placement, self.parameters.swing
-        foothold, rise, added = swing.foothold, swing.rise, swing.clearance
-        if timing.step - state.elapsed > FREEZE_TIME:
-            is_first = state.elapsed - timing.double_support < 0.5 * self._period
-            smoothing = 1.0 if is_first else self._period / (self._period + FILTER_TIME)
-            yaw = state.heading + state.turn * timing.step
-            place = self._footholds.nearest(
-                state.ground, goal, yaw, state.stance_foot, state.stance, state.direction, swing.foothold.face, expected
-            )
-            feet = (state.old_foot, place)
-            desired = clearance(state.ground, *feet, yaw, self._sole, self.parameters.clearance, swing.ordinary)
-            slow = 1.0 if is_first else self._period / (self._period + RISE_FILTER_TIME)
-            added = added.filtered(desired, slow)
-            position = foothold.position + smoothing * (place.position - foothold.position)
-            rise += slow * (place.ground - state.old_foot.ground - rise)
-            foothold = place._replace(position=position)
-        progress = timing.swing_progress(state.elapsed)
-        rate = (1.0 - progress) / max(remaining, 1e-6)
-        if progress < added.depart:
-            start = PlanarMotion(swing.start)
-            motion = swing.motion.towards(start, (added.depart - progress) / max(rate, 1e-6), self._period)
-        else:
-            landing = law.landing(foothold.position, command.velocity * state.direction)
-            if added.arrive < 1.0:
-                landing = PlanarMotion(foothold.position)
-            motion = swing.motion.towards(landing, remaining - (1.0 - added.arrive) / max(rate, 1e-6), self._period)
-        waypoint = placement.passing_waypoint(
-            state.local(swing.motion.position), state.local(foothold.position), state.stance
-        )
-        if waypoint is not None:
-            point, fraction = waypoint
-            passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, self._period)
-            motion = motion.with_sideways_of(passing, state.direction)
-        return swing._replace(motion=motion, foothold=foothold, rise=rise, clearance=added)
 
     def _clamp(self, state: PlannerState, zmp: complex, heel_is_up: bool = False) -> complex:
         """The zero-moment point, limited to the base of support."""

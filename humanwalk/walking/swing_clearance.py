@@ -33,6 +33,9 @@ TIMES = np.linspace(0.0, 1.0, SAMPLES)
 ENDING = 0.25
 """Part of the swing before touchdown in which the margin decreases."""
 
+HOLD = 0.06
+"""Time in which a foot that only rises or sinks corrects its place [s] (our choice)."""
+
 SPACING = 0.03
 """Largest distance of two points under the sole [m]."""
 
@@ -75,6 +78,14 @@ class Clearance(NamedTuple):
             return ScalarMotion()
         return PiecewiseCubic.through((0.0, *self.lift, 0.0)).at(progress)
 
+    def time_to_depart(self, progress: float, remaining: float) -> float:
+        """Time until the foot departs [s], at a progress with a remaining time to touchdown [s]; at least `HOLD`."""
+        return max((self.depart - progress) / (1.0 - progress) * remaining, HOLD)
+
+    def time_to_arrive(self, progress: float, remaining: float) -> float:
+        """Time until the foot is above its foothold [s]; see `time_to_depart`."""
+        return max((self.arrive - progress) / max(1.0 - progress, 1e-9) * remaining, HOLD)
+
     def filtered(self, goal: Clearance, smoothing: float) -> Clearance:
         """The clearance moved toward another one by a share of the difference."""
         lift = tuple(a + smoothing * (b - a) for a, b in zip(self.lift, goal.lift, strict=True))
@@ -101,6 +112,8 @@ def clearance(
         law: Parameters.
         ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
     """
+    if start.face.covers_as(goal.face):
+        return Clearance()
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
     if above.max() <= law.tolerance:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from humanwalk.numerics import Array
@@ -37,6 +37,7 @@ def felt(touches: tuple[Touch, ...], duration: float, ground: FeltGround | None 
     return ground
 
 
+@settings(max_examples=20)
 @given(slopes, slopes, heights)
 def test_a_foot_that_stands_flat_finds_the_plane_under_it(slope: float, cross_slope: float, height: float) -> None:
     plane = Plane(slope=slope, cross_slope=cross_slope)

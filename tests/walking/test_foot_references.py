@@ -92,8 +92,10 @@ def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progr
     assert (after.toes[0] - before.toes[0]) / (2.0 * h) == pytest.approx(here.toes[1], abs=1e-3)
 
 
-def test_before_a_step_onto_higher_ground_the_heel_stays_down() -> None:
-    level, higher, lower = (rollover_speed(state_at(0.0), OLD, Foothold(0.5 + 0.1j, ground), WALK, PARAMETERS)
-                            for ground in (0.0, 0.18, -0.18))  # fmt: skip
-    assert higher == 0.0
-    assert lower == level > 0.0
+@pytest.mark.parametrize("ground", [0.18, -0.18])
+def test_before_a_step_up_or_down_the_heel_stays_on_the_ground(ground: float) -> None:
+    goal, late = Foothold(NEXT.position, ground), state_at(TIMING.step - 0.01)
+    assert stance_foot(late, swing_to(goal), WALK, PARAMETERS).task is FootTask.FLAT
+    assert stance_foot(late, swing_to(NEXT), WALK, PARAMETERS).task is FootTask.HEEL_OFF
+    landed = state_at(0.5 * TIMING.double_support)._replace(left=STANCE._replace(ground=ground))
+    assert foot_behind(landed, WALK, PARAMETERS).task is FootTask.HEEL_OFF

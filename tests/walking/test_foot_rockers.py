@@ -13,7 +13,7 @@ DOUBLE_SUPPORT = 0.1
 
 
 def over_ball(since: float, speed: float = 1.2) -> FootReference:
-    return ROCKERS.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
+    return ROCKERS.over_ball(since, ROCKERS.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
 
 
 def test_heels_rise_above_a_minimum_forward_speed() -> None:

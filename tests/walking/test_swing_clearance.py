@@ -15,7 +15,7 @@ from humanwalk.walking.swing_clearance import INTERVALS, Clearance, ClearancePar
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 LAW = ClearanceParameters()
-LIFT = (0.02, 0.1, 0.15, 0.2, 0.2, 0.1, 0.05)
+LIFT = (*(0.2 * k / INTERVALS for k in range(1, INTERVALS - 1)), 0.05)
 
 
 def sole_above_ground(course: Course, start: complex, end: complex) -> float:

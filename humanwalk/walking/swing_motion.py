@@ -1,0 +1,105 @@
+"""The swinging foot from one control period to the next: its foothold, its clearance and its way over the level plane.
+
+Points of the level plane are complex numbers x + iy [m].
+"""
+
+from typing import NamedTuple
+
+from humanwalk.walking.command import Command
+from humanwalk.walking.foot_placement import FACE_FREEZE_TIME, FILTER_TIME, FREEZE_TIME, RISE_FILTER_TIME
+from humanwalk.walking.motions import PlanarMotion
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.preview import FootholdPlanner
+from humanwalk.walking.swing_clearance import clearance
+
+
+class SwingGoal(NamedTuple):
+    """Where a swinging foot goes.
+
+    Attributes:
+        desired: Foothold that balance requires now [m].
+        expected: Foothold that it will require at touchdown [m].
+        remaining: Time until touchdown [s].
+    """
+
+    desired: complex
+    expected: complex
+    remaining: float
+
+
+def advanced_swing(
+    state: PlannerState,
+    swing: Swing,
+    goal: SwingGoal,
+    command: Command,
+    parameters: StepPlannerParameters,
+    footholds: FootholdPlanner,
+    period: float,
+) -> Swing:
+    """Return the swinging foot one control period later.
+
+    Args:
+        state: State of the planner.
+        swing: The swinging foot.
+        goal: Where it goes.
+        command: The command.
+        parameters: Parameters of the planner.
+        footholds: Finds the foothold.
+        period: Control period [s].
+    """
+    is_first = state.elapsed - state.timing.double_support < 0.5 * period
+    if state.timing.step - state.elapsed > FREEZE_TIME:
+        swing = _with_foothold(state, swing, goal, parameters, footholds, None if is_first else period)
+    return swing._replace(motion=_moved(state, swing, goal.remaining, command, parameters, period))
+
+
+def _with_foothold(
+    state: PlannerState,
+    swing: Swing,
+    goal: SwingGoal,
+    parameters: StepPlannerParameters,
+    footholds: FootholdPlanner,
+    period: float | None,
+) -> Swing:
+    """The swing with the foothold nearest to the goal, filtered but in the first control period."""
+    smoothing, slow = (1.0 if period is None else period / (period + time) for time in (FILTER_TIME, RISE_FILTER_TIME))
+    yaw = state.heading + state.turn * state.timing.step
+    is_final = state.timing.step - state.elapsed < FACE_FREEZE_TIME
+    stance = (state.stance_foot, state.stance, state.direction)
+    place = footholds.nearest(state.ground, goal.desired, yaw, *stance, swing.foothold.face, goal.expected, is_final)
+    feet = (state.old_foot, place)
+    added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary)
+    position = swing.foothold.position + smoothing * (place.position - swing.foothold.position)
+    return swing._replace(
+        foothold=place._replace(position=position),
+        rise=swing.rise + slow * (place.ground - state.old_foot.ground - swing.rise),
+        clearance=swing.clearance.filtered(added, slow),
+    )
+
+
+def _moved(
+    state: PlannerState,
+    swing: Swing,
+    remaining: float,
+    command: Command,
+    parameters: StepPlannerParameters,
+    period: float,
+) -> PlanarMotion:
+    """Motion over the level plane: on the way to the foothold, and around the stance foot."""
+    foothold, added = swing.foothold.position, swing.clearance
+    progress = state.timing.swing_progress(state.elapsed)
+    landing, time = parameters.swing.landing(foothold, command.velocity * state.direction), remaining
+    if progress < added.depart:
+        landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining)
+    elif added.arrive < 1.0:
+        landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining)
+    motion = swing.motion.towards(landing, time, period)
+    waypoint = parameters.placement.passing_waypoint(
+        state.local(swing.motion.position), state.local(foothold), state.stance
+    )
+    if waypoint is None:
+        return motion
+    point, fraction = waypoint
+    passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, period)
+    return motion.with_sideways_of(passing, state.direction)
