@@ -4,6 +4,7 @@ from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.terrain.face import surface_axes
 from humanwalk.walking.command import Command
+from humanwalk.walking.foot_rockers import FULL_PITCH_SPEED
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import blend
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -25,19 +26,24 @@ def rollover_speed(
     """Forward speed for the rollover of a foot in the step from `start` to `goal` [m/s].
 
     It is the commanded one, or less if the step is short or backward. A foot that is steep when it leaves the ground
-    below the body catches the ground with its toes.
+    below the body catches the ground with its toes. In a step up or down it is large: the ankle of a foot that rises
+    beside a riser is far behind the body, and that of one below which the body sinks is, too; it does not bend so far
+    that the foot could be level.
     """
     length = ((goal.position - start.position) / state.direction).real
-    return min(command.forward, SHORT_STEP * length / state.timing.step)
+    climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
+    ordinary = min(command.forward, SHORT_STEP * length / state.timing.step)
+    return (1.0 - climbing) * ordinary + climbing * max(ordinary, FULL_PITCH_SPEED)
 
 
 def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
     """Time from heel-off to touchdown of the other foot in the step from `start` to `goal` [s].
 
-    Before a step up or down the heel stays on the ground: a slow walker on its toes cannot move the zero-moment point
-    back.
+    Before a step up the heel stays on the ground: a slow walker on its toes cannot move the zero-moment point back.
+    Before a step down it rises earlier, because the ankle bends no further while the body sinks.
     """
-    return parameters.rockers.ball * parameters.swing.rolling_share(start.step_to(goal))
+    share, step = parameters.swing.rolling_share, start.step_to(goal)
+    return parameters.rockers.ball * (share(max(step, 0.0)) + 1.0 - share(min(step, 0.0)))
 
 
 def stance_rollover_speed(

@@ -17,7 +17,7 @@ from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
-from humanwalk.walking.swing_clearance import TIMES
+from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import BodyState, Phase
 from humanwalk.walking.zmp_reference import desired_gait
@@ -136,8 +136,10 @@ class PhaseTransitions:
         """The state with the next footholds, and with duration and speed of the step that suit them."""
         gait = desired_gait(state, command, self._parameters)
         preview = self._footholds.preview(state.ground, state.stance_foot, state.stance, state.heading, gait, ahead)
-        rise = preview.footholds[0].ground - state.old_foot.ground
-        factor = self._parameters.pacing.duration_factor(rise)
+        goal, law, sole = preview.footholds[0], self._parameters.clearance, self._footholds.sole
+        added = clearance(state.ground, state.old_foot, goal, state.heading, sole, law)
+        lift = max(max(added.lift) - law.margin, 0.0)
+        factor = self._parameters.pacing.duration_factor(goal.ground - state.old_foot.ground, lift)
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
         # A step that takes longer is not ahead by what the gait covers in that time.

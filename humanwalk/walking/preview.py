@@ -47,12 +47,20 @@ class Pacing:
     slowing: float = quantity(1.8, "1/m", 0.0, 10.0)
     """Increase of the duration per difference in height beyond that, relative to the ordinary one."""
 
+    lifting: float = quantity(3.0, "1/m", 0.0, 10.0)
+    """Increase of the duration per additional lift of the foot, relative to the ordinary one."""
+
     friction_use: float = quantity(0.8, "", 0.1, 1.0)
     """Share of the friction that forces of the ground use at most; shortens steps on ice and on slopes."""
 
-    def duration_factor(self, rise: float) -> float:
-        """Duration of a step relative to the ordinary one, in which a foot rises or descends by `rise` [m]."""
-        return 1.0 + self.slowing * max(abs(rise) - self.free_rise, 0.0)
+    def duration_factor(self, rise: float, lift: float) -> float:
+        """Duration of a step relative to the ordinary one.
+
+        Args:
+            rise: Height by which the foot rises or descends [m].
+            lift: Additional height to which it is lifted on its way [m].
+        """
+        return 1.0 + max(self.slowing * (abs(rise) - self.free_rise), self.lifting * lift, 0.0)
 
     def longest_step(self, face: Face, com_height: float, width: float) -> float:
         """Longest step [m] of a width [m], for which forces from feet to center of mass are within friction."""

@@ -92,10 +92,20 @@ def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progr
     assert (after.toes[0] - before.toes[0]) / (2.0 * h) == pytest.approx(here.toes[1], abs=1e-3)
 
 
+def test_before_a_step_up_the_heel_stays_on_the_ground_and_before_one_down_it_rises_early() -> None:
+    def task(ground: float, before: float) -> FootTask:
+        goal = Foothold(NEXT.position, ground)
+        return stance_foot(state_at(TIMING.step - before), swing_to(goal), WALK, PARAMETERS).task
+
+    assert task(0.18, 0.01) is FootTask.FLAT
+    assert task(0.0, 0.01) is task(-0.18, 0.01) is FootTask.HEEL_OFF
+    assert task(0.0, 1.5 * ROCKERS.ball) is FootTask.FLAT
+    assert task(-0.18, 1.5 * ROCKERS.ball) is FootTask.HEEL_OFF
+
+
 @pytest.mark.parametrize("ground", [0.18, -0.18])
-def test_before_a_step_up_or_down_the_heel_stays_on_the_ground(ground: float) -> None:
-    goal, late = Foothold(NEXT.position, ground), state_at(TIMING.step - 0.01)
-    assert stance_foot(late, swing_to(goal), WALK, PARAMETERS).task is FootTask.FLAT
-    assert stance_foot(late, swing_to(NEXT), WALK, PARAMETERS).task is FootTask.HEEL_OFF
-    landed = state_at(0.5 * TIMING.double_support)._replace(left=STANCE._replace(ground=ground))
-    assert foot_behind(landed, WALK, PARAMETERS).task is FootTask.HEEL_OFF
+def test_in_a_step_up_or_down_the_foot_behind_is_steep_also_at_a_low_speed(ground: float) -> None:
+    landed = state_at(0.9 * TIMING.double_support)
+    level = foot_behind(landed, Command(0.3), PARAMETERS).pitch.value
+    stepped = foot_behind(landed._replace(left=STANCE._replace(ground=ground)), Command(0.3), PARAMETERS).pitch.value
+    assert stepped > 2.0 * level > 0.0

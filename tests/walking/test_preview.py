@@ -82,8 +82,9 @@ def test_moves_relative_to_a_slower_gait_lead_to_the_same_footholds() -> None:
 
 
 @given(st.floats(-0.4, 0.4))
-def test_steps_over_a_large_rise_take_longer(rise: float) -> None:
-    factor = PACING.duration_factor(rise)
-    assert factor == PACING.duration_factor(-rise) >= 1.0
+def test_steps_over_a_large_rise_or_an_obstacle_take_longer(rise: float) -> None:
+    factor = PACING.duration_factor(rise, 0.0)
+    assert factor == PACING.duration_factor(-rise, 0.0) >= 1.0
+    assert PACING.duration_factor(rise, 0.15) >= max(factor, PACING.duration_factor(0.0, 0.15)) > 1.0
     if abs(rise) <= PACING.free_rise:
         assert factor == 1.0

@@ -1,0 +1,46 @@
+"""The balanced walker on ground that it knows, and on a slope that it does not."""
+
+import numpy as np
+import pytest
+
+from humanwalk.run.simulate import simulate
+from humanwalk.scenario import load_scenario
+
+pytestmark = pytest.mark.slow
+
+TEN_DEGREES, SIX_DEGREES, FOUR_DEGREES = np.deg2rad((10.0, 6.0, 4.0)).tolist()
+
+
+@pytest.mark.parametrize(
+    "slope, cross_slope, knowledge",
+    [
+        (TEN_DEGREES, 0.0, "exact"),
+        (-TEN_DEGREES, 0.0, "exact"),
+        (0.0, SIX_DEGREES, "exact"),
+        (FOUR_DEGREES, 0.0, "blind"),
+    ],
+)
+def test_it_walks_on_slopes_at_the_height_of_level_walking(slope: float, cross_slope: float, knowledge: str) -> None:
+    terrain = f"{{plane: {{slope: {slope}, cross_slope: {cross_slope}}}}}"
+    points = "[{time: 0.0, forward: 0.8}]"
+    fields = {"terrain": terrain, "controller.balanced.command.points": points}
+    outcome = simulate(load_scenario("walk", {"duration": "5", "controller.balanced.knowledge": knowledge, **fields}))
+    assert outcome.end == "completed"
+    x, y, z = (outcome.signals[f"com.{axis}_m"].to_numpy() for axis in "xyz")
+    assert x[-1] > 2.0
+    ground = x * np.tan(slope) + y * np.tan(cross_slope)
+    np.testing.assert_allclose(z - ground, 0.94, atol=0.07)
+
+
+def test_climbing_stairs_raises_the_body_by_their_height() -> None:
+    stairs = "{course: {run_up: 0.5, pieces: [{stairs: {rise: 0.185, tread: 0.28, number: 4}}, flat]}}"
+    points = "[{time: 0.0, forward: 0.5}]"
+    outcome = simulate(
+        load_scenario("walk", {"duration": "7", "terrain": stairs, "controller.balanced.command.points": points})
+    )
+    assert outcome.end == "completed"
+    x, z = (outcome.signals[f"com.{axis}_m"].to_numpy() for axis in "xz")
+    assert x[-1] > 0.5 + 4 * 0.28
+    assert z[-1] - z[0] == pytest.approx(4 * 0.185, abs=0.06)
+    soles = outcome.signals["right_sole.z_m"].to_numpy(), outcome.signals["left_sole.z_m"].to_numpy()
+    assert max(sole[-1] for sole in soles) > 4 * 0.185 - 0.05
