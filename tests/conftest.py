@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS, PELVIS, other_side
+from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.plant import Subject, kinematics_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import LegKinematics
@@ -18,13 +19,14 @@ from humanwalk.diagrams.walker import make_walker
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
-from humanwalk.measures.human_likeness import ANGLES, people
+from humanwalk.measures.curves import CURVES
+from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.recorder import recorded_signals
 from humanwalk.scenario import load_scenario
-from humanwalk.sides import Side
+from humanwalk.sides import SIDES, Side
 
 PERIOD = 0.005
 WEIGHT = 70.0 * GRAVITY
@@ -32,10 +34,10 @@ DUTY, STRIDE, LENGTH, WIDTH = 0.6, 1.0, 1.3, 0.12
 
 
 def of_people(name: str, phase: Any) -> Array:
-    """People's mean of an angle at shares of the gait cycle [deg]."""
-    cycle, mean, _ = people(ANGLES[name].people)
+    """People's mean of a curve at a free speed, at shares of the gait cycle."""
+    mean = CURVES[name].people("free").mean
     # The end of the cycle meets its beginning.
-    return np.interp(100.0 * (phase % 1.0), cycle, mean + cycle / 100.0 * (mean[0] - mean[-1]))
+    return np.interp(100.0 * (phase % 1.0), CYCLE, mean + CYCLE / 100.0 * (mean[0] - mean[-1]))
 
 
 def hump_force(share: Array, first: float, dip: float, second: float) -> Array:
@@ -56,10 +58,10 @@ def make_walk(
     humps: tuple[float, float, float] = (1.1, 0.8, 1.1),
     **more: Any,
 ) -> pa.Table:
-    """A walk in which every angle is people's mean; the left leg is half a stride late; the pelvis is the right's."""
+    """A walk of people's mean angles; the left leg is half a stride late; the pelvis is the right's."""
     time = PERIOD * np.arange(round(duration / PERIOD) + 1)
     data = {TIME: time}
-    for side, lag, y in (("Right", 0.0, -WIDTH / 2), ("Left", 0.5, WIDTH / 2)):
+    for side, lag, y in zip(SIDES, (0.0, 0.5), (-WIDTH / 2, WIDTH / 2), strict=True):
         cycle = time / STRIDE - lag
         phase = cycle % 1.0
         down = (phase < DUTY - 1e-9) | standing
@@ -70,13 +72,28 @@ def make_walk(
         data[f"{name}_foot.force_z_N"] = np.where(down, WEIGHT * hump_force(np.minimum(phase / DUTY, 1.0), *humps), 0.0)
         if standing:
             data[f"{name}_foot.force_z_N"] = np.full_like(time, WEIGHT / 2)
-        for joint, motion in (("hip", "LegFemurMotion"), ("knee", "LegTibiaMotion"), ("ankle", "LegAnkleMotion")):
-            data[f"{side}{motion}.angle_rad"] = np.radians(of_people(joint, phase))
-            data[f"{side}{motion}.velocity_rad_s"] = np.full_like(time, 1.0)
-            data[f"{side}{motion}.torque_N_m"] = 35.0 * np.sin(2 * np.pi * phase)
+        data[f"{name}_sole.z_m"] = np.zeros_like(time)
+        # From the heel to the toes.
+        for axis, way in zip("xyz", (np.cos(heading), np.sin(heading), 0.0), strict=True):
+            data[f"{name}_foot.cop_{axis}_m"] = data[f"{name}_sole.{axis}_m"] + way * (0.2 * phase / DUTY - 0.04)
+        leg = LEGS[side]
+        for joint, angle in (
+            (leg.hip_flexion, np.radians(of_people("hip", phase)) - PELVIC_TILT),
+            (leg.hip_abduction, np.radians(-of_people("hip adduction", phase))),
+            (leg.hip_rotation, np.radians(of_people("hip rotation", phase))),
+            (leg.knee, np.radians(of_people("knee", phase))),
+            (leg.ankle, np.radians(of_people("ankle", phase))),
+            (leg.ankle_inversion, np.zeros_like(time)),
+            (leg.ankle_rotation, np.zeros_like(time)),
+        ):
+            data[f"{joint}.angle_rad"] = angle
+        for joint in (leg.hip_flexion, leg.knee, leg.ankle):
+            data[f"{joint}.velocity_rad_s"] = np.full_like(time, 1.0)
+            data[f"{joint}.torque_N_m"] = 35.0 * np.sin(2 * np.pi * phase)
     phase = time / STRIDE
     rotation, obliquity, tilt = (of_people(f"pelvis {name}", phase) for name in ("rotation", "obliquity", "tilt"))
     # Right side forward turns left, right side up rolls the left one down, forward tilt pitches about the y axis.
+    tilt = tilt - np.degrees(PELVIC_TILT)
     turn = Rotation.from_euler("ZXY", np.column_stack([rotation, -obliquity, tilt]), degrees=True)
     data |= zip((f"pelvis.quaternion_{axis}" for axis in "xyzw"), turn.as_quat().T, strict=True)
     data["com.x_m"] = LENGTH * time / STRIDE

@@ -25,7 +25,7 @@ BODY_WORDS = {word for name in BODY_NAMES for word in re.findall(r"[A-Z][a-z]+",
 PLACEHOLDER = "\N{WHITE SQUARE}"
 """Stands for an expression inside an f-string."""
 COMPOSED = re.compile(rf"(?:{'|'.join(sorted(BODY_WORDS))}|\d|_|{PLACEHOLDER})+")
-LABELS = {("view/plots/joints.py", "Pelvis")}
+LABELS = {("view/plots/gait_cycle.py", "Pelvis")}
 """Headings of figures that happen to be names of the body."""
 
 

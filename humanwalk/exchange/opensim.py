@@ -1,7 +1,9 @@
-"""A run for OpenSim: angles, torques, ground reaction forces as external loads, and markers.
+"""A run for OpenSim: angles, torques, ground reaction forces as external loads, markers, and clinical angles.
 
 Axes are OpenSim's: x forward, y up, z right. Joints are named and signed as in the full-body model of Rajagopal et al.
-(2016), see `humanwalk.body.opensim_names`. Joints absent from that model keep their names; OpenSim ignores them.
+(2016), see `humanwalk.body.opensim_names`. Joints absent from that model keep their names; OpenSim ignores them. As in
+that model, hip and pelvis angles of `angles.mot` are zero in upright standing; the clinical ones, of the pelvic plane,
+are in `clinical_angles.sto`.
 """
 
 import io
@@ -14,6 +16,7 @@ from humanwalk.body import SIDES
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
 from humanwalk.exchange.motion import ground_forces, marker_paths, sample_rate
 from humanwalk.files import write_text
+from humanwalk.measures.curves import ANGLES
 from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.motion.motion_table import MotionTable, storage_text
@@ -41,10 +44,11 @@ EXTERNAL_FORCE = """			<ExternalForce name="{side}_foot">
 
 
 def write_opensim(run: Run, folder: Path) -> list[Path]:
-    """Write angles.mot, torques.sto, ground_forces.mot, external_loads.xml and markers.trc."""
+    """Write angles.mot, clinical_angles.sto, torques.sto, ground_forces.mot, external_loads.xml and markers.trc."""
     loads = "".join(EXTERNAL_FORCE.format(side=side.lower(), letter=side[0].lower()) for side in SIDES)
     texts = {
         "angles.mot": storage_text("Coordinates", angles(run)),
+        "clinical_angles.sto": storage_text("Clinical angles", clinical_angles(run)),
         "torques.sto": storage_text("Actuator torques", torques(run)),
         "ground_forces.mot": storage_text("Ground forces", external_loads(run)),
         "external_loads.xml": EXTERNAL_LOADS.format(forces=loads),
@@ -73,6 +77,17 @@ def angles(run: Run) -> MotionTable:
         columns[coordinate] = factor * angle
     for coordinate, (joints, factor) in SPINE_COORDINATES.items():
         columns[coordinate] = factor * np.sum([own[joint] for joint in joints], axis=0)
+    return _table(run, columns, in_degrees=True)
+
+
+def clinical_angles(run: Run) -> MotionTable:
+    """The angles of a gait report (`humanwalk.measures.curves.ANGLES`) of both legs [deg]: hip_flexion_r and so on."""
+    mass = run.scenario.subject.mass
+    columns = {
+        f"{angle.quantity.removesuffix('_deg')}_{side[0].lower()}": angle.of(run.signals, side, mass)
+        for side in SIDES
+        for angle in ANGLES.values()
+    }
     return _table(run, columns, in_degrees=True)
 
 

@@ -83,7 +83,7 @@ def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents
         force: vertical ground reaction force [N], shape (rows,).
         begin: time from which events count [s].
     """
-    contact = _with_hysteresis(force)
+    contact = in_contact(force)
     rows = force.size
     for first, end in stretches(~contact):
         if end - first < rows and time[min(end, rows - 1)] - time[first] < MIN_SWING_S:
@@ -106,8 +106,11 @@ def events_of(signals: pa.Table, side: Side, begin: float = -np.inf) -> FootEven
     return foot_events(signals[TIME].to_numpy(), signals[f"{side.lower()}_foot.force_z_N"].to_numpy(), begin)
 
 
-def _with_hysteresis(force: Array) -> Mask:
-    """Contact begins at CONTACT_ON_N and ends at CONTACT_OFF_N; between them the state of the row before holds."""
+def in_contact(force: Array) -> Mask:
+    """Whether a vertical force [N] is contact, shape (rows,): it begins at CONTACT_ON_N and ends at CONTACT_OFF_N.
+
+    Between the two the state of the row before holds.
+    """
     on, off = force >= CONTACT_ON_N, force <= CONTACT_OFF_N
     decided = np.where(on | off, np.arange(force.size), 0)
     return on[np.maximum.accumulate(decided)]

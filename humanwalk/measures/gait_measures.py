@@ -4,7 +4,7 @@ A stride of a foot lasts from a touchdown to its next one. A step ends with a to
 last touchdown of the other foot. A stance lasts from touchdown to toe-off. Lengths are along x, the walking direction.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TypedDict
 
 import numpy as np
@@ -115,7 +115,7 @@ def double_support_shares(foot: FootEvents, other: FootEvents) -> Array:
     return np.array([float((foot.contact & other.contact)[a:b].mean()) for a, b in foot.strides])
 
 
-def cadence(feet: dict[Side, FootEvents]) -> float | None:
+def cadence(feet: Mapping[Side, FootEvents]) -> float | None:
     """Steps of both feet per minute, from the first to the last touchdown."""
     times = np.concatenate([foot.touchdown_times for foot in feet.values()])
     return float(60.0 * (times.size - 1) / np.ptp(times)) if times.size > 1 else None

@@ -14,6 +14,8 @@ TIME = "time_s"
 
 UNITS = {
     "kg_m2": "kg m2",
+    "N_m_kg": "N m/kg",
+    "W_kg": "W/kg",
     "N_m": "N m",
     "rad_s": "rad/s",
     "m_s": "m/s",
@@ -24,6 +26,7 @@ UNITS = {
     "N": "N",
     "s": "s",
     "J": "J",
+    "BW": "BW",
 }
 """Units by how the name of a signal or measure ends."""
 UNIT = re.compile(f"_({'|'.join(UNITS)})$")

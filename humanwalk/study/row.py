@@ -12,8 +12,11 @@ import numpy as np
 
 from humanwalk.body.anatomy import human
 from humanwalk.files import make_folder
-from humanwalk.measures.human_likeness import ANGLES, compare
+from humanwalk.measures.curves import CURVES
+from humanwalk.measures.human_likeness import Comparison, compare
+from humanwalk.measures.signals import UNITS
 from humanwalk.measures.summary import Summary
+from humanwalk.measures.walk_measures import MEASURES
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.provenance import PACKAGES, versions
@@ -26,7 +29,14 @@ Row = dict[str, Any]
 NOT_MEASURES = ("scenario", "description", "versions")
 """Parts of a summary that all rows of a study have in common, or that have a column of another name."""
 
-LIKENESS = ("correlation", "rms_deg")
+LIKENESS = {
+    "correlation": "correlation",
+    "inside": "within_1_sd",
+    "inside_2": "within_2_sd",
+    "distance": "distance_sd",
+    "peak_ratio": "peak_ratio",
+}
+"""Columns of the likeness of a curve, by attribute of `Likeness`; its rms has a unit in its name."""
 
 VERSIONS = (*PACKAGES, "python", "machine")
 
@@ -77,27 +87,45 @@ def origin() -> Row:
 def run_columns() -> Mapping[str, type]:
     """Columns that a run fills, with their types: bool, int, float or str."""
     columns = dict(_columns(Summary, ""))
-    likeness = {f"likeness.{_key(angle)}.{name}": float for angle in ANGLES for name in LIKENESS}
+    likeness = {f"likeness.{name}": kind for name, kind in likeness_columns().items()}
     return columns | likeness | {"host": str} | {f"versions.{name}": str for name in VERSIONS}
 
 
-def _likeness(outcome: Outcome) -> dict[str, dict[str, float]]:
+def likeness_columns() -> dict[str, type]:
+    """Columns of the comparison with human gait, without `likeness.`, with their types."""
+    curves = {f"{_key(curve)}.{name}": float for curve in CURVES for name in (*LIKENESS.values(), _rms(curve))}
+    overall = {"score": float, "distance_sd": float, "dimensionless_speed": float, "people": str}
+    return overall | curves | {kind.column: float for kind in MEASURES}
+
+
+def _likeness(outcome: Outcome) -> Row:
     """Means over the strides of both legs; empty for a walk that cannot be compared."""
     try:
-        curves = compare(outcome.signals, outcome.scenario).curves
+        comparison = compare(outcome.signals, outcome.scenario)
     except ParameterError:
         return {}
     return {
-        _key(angle): {
-            "correlation": float(np.concatenate([each.correlation for each in sides.values()]).mean()),
-            "rms_deg": float(np.concatenate([each.rms for each in sides.values()]).mean()),
-        }
-        for angle, sides in curves.items()
+        "score": comparison.score,
+        "distance_sd": comparison.distance,
+        "dimensionless_speed": comparison.dimensionless_speed,
+        "people": comparison.group,
+        **{_key(curve): _of_curve(comparison, curve) for curve in CURVES},
+        **{kind.column: measure.value for kind, measure in zip(MEASURES, comparison.measures, strict=True)},
     }
 
 
-def _key(angle: str) -> str:
-    return angle.replace(" ", "_")
+def _of_curve(comparison: Comparison, curve: str) -> dict[str, float]:
+    values = {name: comparison.mean(curve, attribute) for attribute, name in LIKENESS.items()}
+    return values | {_rms(curve): comparison.mean(curve, "rms")}
+
+
+def _rms(curve: str) -> str:
+    """Name of the rms with the unit of a curve: rms_deg, rms_N_m_kg or rms_W_kg."""
+    return "rms_" + next(ending for ending, unit in UNITS.items() if unit == CURVES[curve].unit)
+
+
+def _key(curve: str) -> str:
+    return curve.replace(" ", "_")
 
 
 def _flat(value: Any, name: str = "") -> Row:

@@ -1,6 +1,6 @@
 """Comparison of a run with human gait: tables for a terminal, a page with figures, numbers as JSON."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,9 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
-from humanwalk.measures.human_likeness import ANGLES, MIN_STRIDES, Comparison, Likeness, compare
+from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS, POWERS, Curve
+from humanwalk.measures.human_likeness import MIN_STRIDES, SCORED, Comparison, compare, pooled
+from humanwalk.measures.normative import SPEED_GROUPS, is_measured
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -17,23 +19,42 @@ from humanwalk.view.page import notes, numbered_notes, paragraph, picture, table
 from humanwalk.view.plots import PLOTS
 
 REPORT = "report.html"
-FIGURES = ("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")
+FIGURES = (
+    "gait_cycle_angles",
+    "gait_cycle_moments",
+    "gait_cycle_powers",
+    "gait_cycle_pelvis",
+    "gait_cycle_hip_and_foot",
+    "cop_under_soles",
+    "ground_reaction",
+)
 
 UP_AT_ITS_END = ("completed", "interrupted", "unfinished")
 
-CURVE_HEADER = ("angle [deg]", "correlation", "difference", "rms", "within 1 SD [%]")
+GROUPS: dict[str, Mapping[str, Curve]] = {
+    "angle [deg]": ANGLES,
+    "internal moment [N m/kg]": MOMENTS,
+    "power [W/kg]": POWERS,
+}
+"""Curves by the heading of their table."""
+CURVE_HEADER = ("correlation", "difference", "rms", "within 1 SD [%]", "within 2 SD [%]", "peak / human")
 MEASURE_HEADER = ("measure", "run", "human", "source")
 
-DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2}
-"""Decimals of a measure in a table, by its unit."""
+DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2, "W/kg": 2, "s": 3}
+"""Decimals in a table, by unit."""
 
 NOTES = (
-    "Run: mean ± standard deviation over the steps, strides or stances of both legs in steady walking.",
-    "Difference, rms: the run's angle minus the human mean; within 1 SD: fraction of the cycle, 68 % for humans.",
-    "Human angles: Schwartz, Rozumalski, Trost (2008), children at self-selected speed, whose curves have the shape of "
-    "adults' at the same dimensionless speed.",
-    "The human pelvic plane is tilted forward by about 10 degrees in upright standing, this model's is not: that part "
-    "of the difference in pelvis tilt and hip angle is an offset of the zero.",
+    "Run: mean ± standard deviation over the steps, strides or stances of both legs in steady walking; 'at most' is "
+    "the greatest of them.",
+    "Difference, rms: the run's curve minus the human mean; within 1 SD, 2 SD: fraction of the cycle, 68 and 95 % for "
+    "humans; peak / human: greatest magnitude over that of the human mean. The score is the mean of the nine fractions "
+    "within 1 SD of hip, knee and ankle: angles, moments, powers.",
+    "Human curves: Schwartz, Rozumalski, Trost (2008), children, whose curves have the shape of adults' at the same "
+    "dimensionless speed, by which their group is chosen.",
+    "Hip flexion and pelvic tilt are those of the plane through the iliac spines, which tilts 11 degrees forward in "
+    "upright standing. Moments are internal: joint torques per body mass; powers are these times the joint's rate.",
+    "CoP backward: greatest distance by which the center of pressure falls back under the foot from 10 to 55 % of the "
+    "gait cycle.",
     "Cost of transport is the integral of all joints' |torque x rate| per weight and distance, which is not the "
     "metabolic cost. No human value is given where no source is known for the same measure.",
 )
@@ -64,14 +85,14 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
     """A comparison stride by stride, ready for JSON; null for undefined values."""
     return {
         "strides": {side.lower(): count for side, count in comparison.strides.items()},
-        "angles": {
-            name: {
-                side.lower(): {
-                    "correlation": _numbers(likeness.correlation),
-                    "difference_deg": _numbers(likeness.difference),
-                    "rms_deg": _numbers(likeness.rms),
-                    "within_1_sd": _numbers(likeness.inside),
-                }
+        "dimensionless_speed": comparison.dimensionless_speed,
+        "people": comparison.group,
+        "score": comparison.score,
+        "distance_sd": comparison.distance,
+        "curves": {
+            name: {"unit": CURVES[name].unit}
+            | {
+                side.lower(): {key: _numbers(values) for key, values in vars(likeness).items()}
                 for side, likeness in sides.items()
             }
             for name, sides in comparison.curves.items()
@@ -88,15 +109,19 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def terminal_tables(comparison: Comparison) -> list[Table]:
-    """Tables for a terminal: angles, then measures with their sources."""
-    angles = Table(*CURVE_HEADER, box=box.SIMPLE)
-    for row in curve_rows(comparison):
-        angles.add_row(*row)
+    """Tables for a terminal: score and curves, then measures with their sources."""
+    tables = []
+    for heading, curves in GROUPS.items():
+        tables.append(Table(heading, *CURVE_HEADER, box=box.SIMPLE))
+        for row in curve_rows(comparison, curves):
+            tables[-1].add_row(*row)
+    tables[0].title = score_text(comparison)
+    tables[0].title_justify = "left"
     caption = "\n".join((*(f"{number} {cited}" for number, cited in enumerate(sources(comparison), 1)), "", *NOTES))
     measures = Table(*MEASURE_HEADER, box=box.SIMPLE, caption=caption, caption_justify="left")
     for row in measure_rows(comparison):
         measures.add_row(*row)
-    return [angles, measures]
+    return [*tables, measures]
 
 
 def write_report(run: Run, comparison: Comparison) -> Path:
@@ -113,7 +138,8 @@ def write_report(run: Run, comparison: Comparison) -> Path:
         f"{run.path.resolve().name}: comparison with human gait",
         (
             paragraph(f"{run.scenario.description}. Compared strides: {strides}."),
-            table(CURVE_HEADER, curve_rows(comparison)),
+            paragraph(score_text(comparison)),
+            *(table((heading, *CURVE_HEADER), curve_rows(comparison, curves)) for heading, curves in GROUPS.items()),
             table(MEASURE_HEADER, measure_rows(comparison)),
             numbered_notes(sources(comparison)),
             *(picture(figure, name) for name, figure in figures if figure is not None),
@@ -123,19 +149,31 @@ def write_report(run: Run, comparison: Comparison) -> Path:
     return path
 
 
-def curve_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
-    """Rows under CURVE_HEADER, both legs' strides together."""
-    for name, sides in comparison.curves.items():
+def score_text(comparison: Comparison) -> str:
+    """The overall score in one line, and with whom the walk is compared."""
+    low, high = SPEED_GROUPS[comparison.group]
+    speed, group = comparison.dimensionless_speed, f"{comparison.group} speed, {low:g} to {high:g}"
+    if not is_measured(speed):
+        group += ": the nearest group that was measured"
+    return (
+        f"Score {100.0 * comparison.score:.0f} %: share of the cycle within 1 SD of people's mean, averaged over "
+        f"{len(SCORED)} curves; {comparison.distance:.1f} SD off on average. Dimensionless speed {speed:.2f}; compared "
+        f"with people at {group}."
+    )
 
-        def both(of: str, sides: Sequence[Likeness] = tuple(sides.values())) -> Array:
-            return np.concatenate([getattr(likeness, of) for likeness in sides])
 
+def curve_rows(comparison: Comparison, curves: Mapping[str, Curve]) -> Iterator[tuple[str, ...]]:
+    """Rows under a heading of GROUPS and CURVE_HEADER, both legs' strides together."""
+    for name, curve in curves.items():
+        sides, form = comparison.curves[name], f".{DECIMALS[curve.unit]}f"
         yield (
-            f"{name}, {ANGLES[name].positive}",
-            _spread(both("correlation"), ".2f"),
-            _spread(both("difference"), ".1f"),
-            _spread(both("rms"), ".1f"),
-            _spread(100.0 * both("inside"), ".0f"),
+            f"{name}, {curve.positive}",
+            _spread(pooled(sides, "correlation"), ".2f"),
+            _spread(pooled(sides, "difference"), form),
+            _spread(pooled(sides, "rms"), form),
+            _spread(100.0 * pooled(sides, "inside"), ".0f"),
+            _spread(100.0 * pooled(sides, "inside_2"), ".0f"),
+            _spread(pooled(sides, "peak_ratio"), ".2f"),
         )
 
 
@@ -145,7 +183,7 @@ def measure_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
     for measure in comparison.measures:
         form, people = f".{DECIMALS[measure.unit]}f", measure.people
         name = f"{measure.name} [{measure.unit}]" if measure.unit else measure.name
-        row = (name, _spread(measure.values, form))
+        row = (name, f"at most {measure.value:{form}}" if measure.worst else _spread(measure.values, form))
         if people is None:
             yield *row, "", ""
         else:

@@ -8,15 +8,13 @@ import pyarrow as pa
 
 from humanwalk.body import REFERENCE_STATURE, SIDES
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import LEGS
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import Subject
+from humanwalk.measures.curves import ANGLES, JOINTS
 from humanwalk.measures.events import CONTACT_ON_N
-from humanwalk.measures.human_likeness import JOINTS, joint_signal
+from humanwalk.measures.orientation import sole_rotation
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
-from humanwalk.systems.signal import state_columns
 
 CHANNELS = (
     "time",
@@ -48,7 +46,7 @@ def encode_samples(signals: pa.Table, subject: Subject) -> str:
     column["time"][:] = time
     for side in SIDES:
         for joint in JOINTS:
-            column[f"{side} {joint}"][:] = np.degrees(joint_signal(signals, joint, side, "angle_rad"))
+            column[f"{side} {joint}"][:] = ANGLES[joint].of(signals, side, subject.mass)
     if f"{SIDES[0].lower()}_foot.force_z_N" in signals.column_names:
         cop = _centers_of_pressure(signals, subject)
         for place, side in enumerate(SIDES):
@@ -76,16 +74,11 @@ def require_samples(text: str) -> None:
 
 def _centers_of_pressure(signals: pa.Table, subject: Subject) -> Array:
     """Centers of pressure in the frames of the soles [foot lengths], shape (rows, 2 feet, 2)."""
-    plant = kinematics_plant(subject)
-    context = plant.CreateDefaultContext()
-    soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
-    positions = matrix(signals, state_columns(JointMap.of(plant)))[:, : plant.num_positions()]
-    points = [matrix(signals, [f"{side.lower()}_foot.cop_{axis}_m" for axis in "xyz"]) for side in SIDES]
     scale = subject.stature / REFERENCE_STATURE
-    cop = np.empty((len(positions), len(SIDES), 2))
-    for row, q in enumerate(positions):
-        plant.SetPositions(context, q)
-        for place, sole in enumerate(soles):
-            p_SQ = sole.CalcPoseInWorld(context).inverse() @ points[place][row]
-            cop[row, place] = p_SQ[:2]
+    cop = np.empty((signals.num_rows, len(SIDES), 2))
+    for place, side in enumerate(SIDES):
+        points, sole = (
+            matrix(signals, [f"{side.lower()}_{name}{axis}_m" for axis in "xyz"]) for name in ("foot.cop_", "sole.")
+        )
+        cop[:, place] = sole_rotation(signals, side).inv().apply(points - sole)[:, :2]
     return np.asarray((cop - np.array((HEEL * scale, 0.0))) / ((TOE - HEEL) * scale))

@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 from humanwalk.body import SIDES, human
 from humanwalk.body.markers import markers
 from humanwalk.body.opensim_names import COORDINATES, R_OW, SPINE_COORDINATES
+from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.cli.main import app
 from humanwalk.exchange import FORMATS, export_run
 from humanwalk.exchange.motion import ground_force, marker_paths
@@ -62,6 +63,7 @@ def opensim_folder(run: Run) -> Path:
 def test_files_are_those_of_the_format(run: Run, opensim_folder: Path) -> None:
     assert {path.name for path in opensim_folder.iterdir()} == {
         "angles.mot",
+        "clinical_angles.sto",
         "torques.sto",
         "ground_forces.mot",
         "external_loads.xml",
@@ -117,6 +119,37 @@ def test_opensims_world_is_x_forward_y_up_z_right() -> None:
     np.testing.assert_array_equal(R_OW @ up, [0, 1, 0])
     np.testing.assert_array_equal(R_OW @ -left, [0, 0, 1])
     assert np.linalg.det(R_OW) == pytest.approx(1.0)
+
+
+def test_clinical_angles_are_those_of_the_pelvis_from_exported_markers(opensim_folder: Path) -> None:
+    """The pelvis as Plug-in Gait defines it: Y from the right to the left anterior spine, X in the plane with the
+    middle of the posterior spines; rotation about the vertical, then obliquity, then tilt.
+    """
+    flags, columns = read_storage(opensim_folder / "clinical_angles.sto")
+    assert flags["inDegrees"] == "yes"
+    # From OpenSim's axes back to x forward, y left, z up.
+    paths = {name: path @ R_OW for name, path in read_trc(opensim_folder / "markers.trc")[0].items()}
+    left = paths["LASI"] - paths["RASI"]
+    forward = paths["LASI"] + paths["RASI"] - paths["LPSI"] - paths["RPSI"]
+    up = np.cross(forward, left)
+    axes = np.stack([np.cross(left, up), left, up], axis=-1)
+    turns = Rotation.from_matrix(axes / np.linalg.norm(axes, axis=1, keepdims=True)).as_euler("ZXY", degrees=True)
+    for side, sign in (("r", 1.0), ("l", -1.0)):
+        np.testing.assert_allclose(columns[f"pelvis_anterior_tilt_{side}"], turns[:, 2], atol=1e-4)
+        np.testing.assert_allclose(columns[f"pelvis_up_obliquity_{side}"], -sign * turns[:, 1], atol=1e-4)
+        np.testing.assert_allclose(columns[f"pelvis_internal_rotation_{side}"], sign * turns[:, 0], atol=1e-4)
+
+
+def test_clinical_angles_and_coordinates_differ_by_the_tilt_of_the_pelvic_plane(opensim_folder: Path) -> None:
+    _, clinical = read_storage(opensim_folder / "clinical_angles.sto")
+    _, columns = read_storage(opensim_folder / "angles.mot")
+    tilt = np.degrees(PELVIC_TILT)
+    for side in "rl":
+        np.testing.assert_allclose(clinical[f"hip_flexion_{side}"], columns[f"hip_flexion_{side}"] + tilt, atol=1e-8)
+        np.testing.assert_allclose(clinical[f"knee_flexion_{side}"], columns[f"knee_angle_{side}"], atol=1e-8)
+        np.testing.assert_allclose(clinical[f"ankle_dorsiflexion_{side}"], columns[f"ankle_angle_{side}"], atol=1e-8)
+    # At the start the pelvis is level; its other rotations come in another order. OpenSim's tilt is positive backward.
+    assert clinical["pelvis_anterior_tilt_r"][0] == pytest.approx(tilt - columns["pelvis_tilt"][0])
 
 
 def test_torques_are_newton_meters_of_every_joint(opensim_folder: Path, signals: pa.Table) -> None:

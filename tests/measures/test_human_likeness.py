@@ -9,27 +9,29 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body import SIDES
+from humanwalk.body.limbs import LEGS
+from humanwalk.measures.curves import ANGLES, CURVES, JOINTS, over_strides
 from humanwalk.measures.events import FootEvents, events_of
-from humanwalk.measures.human_likeness import (
-    ANGLES,
-    CYCLE,
-    Likeness,
+from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
+from humanwalk.measures.human_likeness import SCORED, Likeness, compare, pooled
+from humanwalk.measures.normative import CYCLE
+from humanwalk.measures.signals import TIME, unit_of
+from humanwalk.measures.walk_measures import (
+    MEASURES,
+    Pace,
     com_excursions,
-    compare,
-    force_peaks,
     late_stance_knee,
-    over_strides,
-    peak_counts,
-    people,
     people_com_excursion,
-    vertical_force,
+    people_stance,
+    people_steps,
 )
-from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import Scenario, load_scenario
 
 MASS = 70.0
+LEG = 0.93
 WEIGHT = MASS * GRAVITY
 DUTY, STRIDE, LENGTH, WIDTH = 0.6, 1.0, 1.3, 0.12
 """Of the made-up walk, see conftest.py: share of stance, time [s] and length of a stride [m], width of a step [m]."""
@@ -40,23 +42,12 @@ def scenario() -> Scenario:
     return load_scenario("thesis", {"subject.mass": str(MASS)})
 
 
-def test_people_are_those_of_the_source() -> None:
-    for angle in ANGLES.values():
-        cycle, mean, sd = people(angle.people)
-        np.testing.assert_array_equal(cycle, np.arange(0, 101, 2))
-        assert sd.min() > 0.0
-        # Heel strike ends the cycle that it begins.
-        assert mean[0] == pytest.approx(mean[-1], abs=1.5)
-    _, knee, _ = people("knee_flexion_deg")
-    assert 65 <= np.arange(0, 101, 2)[knee.argmax()] <= 80
-    assert 50.0 < knee.max() < 70.0
-
-
 def test_walk_of_human_angles_agrees_with_human_gait(walk: Callable[..., Any], scenario: Scenario) -> None:
     comparison = compare(walk(), scenario)
     assert comparison.strides == {"Right": 7, "Left": 7}
-    for name, sides in comparison.curves.items():
-        for side, likeness in sides.items():
+    # The orientation of the feet follows from the other angles.
+    for name in ANGLES.keys() - {"foot progression"}:
+        for side, likeness in comparison.curves[name].items():
             # People's pelvis as the left leg sees it is only nearly that of the right one half a stride before.
             near = side == "Left" and name.startswith("pelvis")
             assert likeness.rms.max() < (1.0 if near else 0.5), name
@@ -69,24 +60,87 @@ def test_walk_of_human_angles_agrees_with_human_gait(walk: Callable[..., Any], s
 def test_correlation_is_independent_of_offset_and_scale_and_the_difference_is_the_offset(
     shift: float, scale: float
 ) -> None:
-    cycle, mean, _ = people("knee_flexion_deg")
-    curve = np.interp(CYCLE, cycle, mean)
-    moved = shift + curve.mean() + scale * (curve - curve.mean())
-    likeness = Likeness.of(moved[None], "knee_flexion_deg")
+    band = ANGLES["knee"].people("free")
+    moved = shift + band.mean.mean() + scale * (band.mean - band.mean.mean())
+    likeness = Likeness.of(moved[None], band)
     assert likeness.correlation[0] == pytest.approx(1.0)
     assert likeness.difference[0] == pytest.approx(shift, abs=1e-9)
-    assert likeness.rms[0] == pytest.approx(np.hypot(shift, (scale - 1) * curve.std()), abs=1e-6)
+    assert likeness.rms[0] == pytest.approx(np.hypot(shift, (scale - 1) * band.mean.std()), abs=1e-6)
+
+
+@given(scale=st.floats(0.2, 3.0))
+def test_peak_ratio_is_the_scale_of_the_curve(scale: float) -> None:
+    band = CURVES["ankle moment"].people("slow")
+    assert Likeness.of(-scale * band.mean[None], band).peak_ratio == pytest.approx(scale)
 
 
 def test_constant_angle_has_no_correlation() -> None:
-    assert np.isnan(Likeness.of(np.full((1, CYCLE.size), 5.0), "knee_flexion_deg").correlation).all()
+    assert np.isnan(Likeness.of(np.full((1, CYCLE.size), 5.0), ANGLES["knee"].people("free")).correlation).all()
 
 
-@pytest.mark.parametrize(("share", "inside"), [(0.0, 1.0), (0.99, 1.0), (1.01, 0.0)])
-def test_inside_is_within_one_standard_deviation(share: float, inside: float) -> None:
-    cycle, mean, sd = people("hip_flexion_deg")
-    curve = np.interp(CYCLE, cycle, mean + share * sd)
-    assert Likeness.of(curve[None], "hip_flexion_deg").inside[0] == inside
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize(
+    ("share", "inside", "inside_2"), [(0.0, 1.0, 1.0), (0.99, 1.0, 1.0), (-1.01, 0.0, 1.0), (2.01, 0.0, 0.0)]
+)
+def test_inside_is_within_one_and_two_standard_deviations(
+    name: str, share: float, inside: float, inside_2: float
+) -> None:
+    band = CURVES[name].people("fast")
+    likeness = Likeness.of((band.mean + share * band.sd)[None], band)
+    assert likeness.inside[0] == inside
+    assert likeness.inside_2[0] == inside_2
+    assert likeness.distance[0] == pytest.approx(abs(share))
+
+
+def kinetics_of_people() -> dict[str, Array]:
+    """Torques and rates of both legs whose moments and powers are people's at a free speed."""
+    time = 0.005 * np.arange(1601)
+    columns = {}
+    for side, lag in zip(SIDES, (0.0, 0.5), strict=True):
+        for name, joint in JOINTS.items():
+            moment, power = (
+                np.interp(100.0 * ((time / STRIDE - lag) % 1.0), CYCLE, CURVES[f"{name} {what}"].people("free").mean)
+                for what in ("moment", "power")
+            )
+            # A rate of 0.1 rad/s where there is no moment.
+            moment = np.where(np.abs(moment) < 1e-3, 1e-3, moment)
+            columns[f"{joint(LEGS[side])}.torque_N_m"] = -MASS * moment
+            columns[f"{joint(LEGS[side])}.velocity_rad_s"] = -power / moment
+    return columns
+
+
+def test_walk_with_the_mean_curves_of_people_scores_one(walk: Callable[..., Any], scenario: Scenario) -> None:
+    comparison = compare(walk(**kinetics_of_people()), scenario)
+    assert comparison.group == "free"
+    assert comparison.score == 1.0
+    assert comparison.distance < 0.1
+    for name in SCORED:
+        assert comparison.mean(name, "correlation") > 0.98, name
+        assert comparison.mean(name, "peak_ratio") == pytest.approx(1.0, rel=0.05), name
+
+
+def test_score_is_the_mean_of_the_nine_curves(walk: Callable[..., Any], scenario: Scenario) -> None:
+    """One joint of one leg without torque: its moment and power leave people's bands."""
+    kinetics = kinetics_of_people()
+    kinetics["LeftLegAnkleMotion.torque_N_m"] *= 0.0
+    comparison = compare(walk(**kinetics), scenario)
+    lost = [1.0 - pooled(comparison.curves[f"ankle {what}"], "inside").mean() for what in ("moment", "power")]
+    assert min(lost) > 0.1
+    assert comparison.score == pytest.approx(1.0 - sum(lost) / len(SCORED))
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+def test_power_is_moment_times_speed_of_extension(walk: Callable[..., Any], joint: str) -> None:
+    signals = walk(**kinetics_of_people())
+    rate = signals[f"{JOINTS[joint](LEGS['Left'])}.velocity_rad_s"].to_numpy()
+    moment, power = (CURVES[f"{joint} {what}"].of(signals, "Left", MASS) for what in ("moment", "power"))
+    np.testing.assert_allclose(power, moment * -rate, atol=1e-12)
+
+
+def test_moments_are_per_body_mass(walk: Callable[..., Any]) -> None:
+    moment = CURVES["hip moment"].of
+    signals = walk()
+    np.testing.assert_allclose(2.0 * moment(signals, "Right", 80.0), moment(signals, "Right", 40.0))
 
 
 def test_strides_are_counted_one_by_one(walk: Callable[..., Any]) -> None:
@@ -95,7 +149,7 @@ def test_strides_are_counted_one_by_one(walk: Callable[..., Any]) -> None:
     time = signals[TIME].to_numpy()
     knee = np.where((time > 3.0) & (time < 4.0), 0.0, signals["RightLegTibiaMotion.angle_rad"].to_numpy())
     strides = over_strides(events_of(signals, "Right"), np.degrees(knee))
-    bad = Likeness.of(strides, "knee_flexion_deg").rms > 10.0
+    bad = Likeness.of(strides, ANGLES["knee"].people("free")).rms > 10.0
     assert np.flatnonzero(bad).tolist() == [2]
 
 
@@ -116,17 +170,15 @@ def right_force(signals: pa.Table) -> tuple[Array, FootEvents]:
     return vertical_force(signals, "Right", WEIGHT), events_of(signals, "Right")
 
 
-@pytest.mark.parametrize(("valley", "count"), [(0.8, 2), (1.0, 2), (1.08, 1)])
-def test_peaks_of_the_vertical_force_are_measured_and_counted(
-    walk: Callable[..., Any], valley: float, count: int
-) -> None:
-    force, foot = right_force(walk(humps=(1.15, valley, 1.1)))
-    assert force_peaks(force, foot).mean(axis=0) == pytest.approx([1.15, valley, 1.1], abs=0.01)
+@pytest.mark.parametrize(("dip", "count"), [(0.8, 2), (1.0, 2), (1.08, 1)])
+def test_peaks_of_the_vertical_force_are_measured_and_counted(walk: Callable[..., Any], dip: float, count: int) -> None:
+    force, foot = right_force(walk(humps=(1.15, dip, 1.1)))
+    assert force_peaks(force, foot).mean(axis=0) == pytest.approx([1.15, dip, 1.1], abs=0.01)
     assert set(peak_counts(force, foot).tolist()) == {count}
 
 
 def test_third_peak_is_counted(walk: Callable[..., Any]) -> None:
-    """A bump of 0.3 body weights in the valley of mid-stance."""
+    """A bump of 0.3 body weights in the dip of mid-stance."""
     bump = with_force(walk(), lambda force, time: force + 0.3 * np.exp(-(((time % STRIDE - 0.3) / 0.02) ** 2)))
     assert set(peak_counts(*right_force(bump)).tolist()) == {3}
 
@@ -134,6 +186,55 @@ def test_third_peak_is_counted(walk: Callable[..., Any]) -> None:
 def test_impact_of_the_heel_is_no_peak(walk: Callable[..., Any]) -> None:
     impact = with_force(walk(), lambda force, time: force + np.where(np.isclose(time % 1.0, 0.02), 2.0, 0.0))
     assert force_peaks(*right_force(impact))[:, 0] == pytest.approx(1.1, abs=0.02)
+
+
+@pytest.mark.parametrize("lost", [0.0, 0.02, 0.05])
+def test_contact_that_a_bouncing_heel_loses_is_measured(walk: Callable[..., Any], lost: float) -> None:
+    begin = 0.047
+
+    def change(force: Array, time: Array) -> Array:
+        return np.where((time % STRIDE > begin) & (time % STRIDE < begin + lost), 0.0, force)
+
+    bounce = with_force(walk(), change)
+    assert contact_lost(bounce, "Right", events_of(bounce, "Right")) == pytest.approx(lost, abs=1e-9)
+    assert contact_lost(bounce, "Left", events_of(bounce, "Left")) == pytest.approx(0.0)
+
+
+def test_contact_that_a_dragging_toe_loses_is_not_after_heel_strike(walk: Callable[..., Any]) -> None:
+    drag = with_force(walk(), lambda force, time: np.where((time % 1.0 > 0.55) & (time % 1.0 < 0.57), 0, force))
+    assert contact_lost(drag, "Right", events_of(drag, "Right")) == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("speed", [0.9, 1.2, 1.4])
+@pytest.mark.parametrize("leg", [0.75, 0.95])
+def test_human_steps_have_the_speed_and_the_walk_ratio(speed: float, leg: float) -> None:
+    length, cadence = people_steps(Pace(speed, leg))
+    assert length.low < length.high
+    assert length.low * cadence.high / 60.0 == pytest.approx(speed)
+    assert length.high * cadence.low / 60.0 == pytest.approx(speed)
+
+
+def test_human_stance_is_shorter_in_faster_walks() -> None:
+    slow, fast = people_stance(Pace(0.9, LEG)), people_stance(Pace(1.4, LEG))
+    assert fast.low < slow.low
+    # The 60 % of the textbooks.
+    textbook = people_stance(Pace(1.2, LEG))
+    assert textbook.low < 0.6 < textbook.high
+
+
+def test_columns_of_measures_are_unique_and_have_their_units() -> None:
+    columns = [kind.column for kind in MEASURES]
+    assert len(columns) == len(set(columns))
+    for kind in MEASURES:
+        assert unit_of(kind.column) == kind.unit
+        assert kind.column.isascii() and kind.column.replace("_", "").isalnum()
+
+
+def test_value_of_a_measure_is_its_mean_or_its_worst(walk: Callable[..., Any], scenario: Scenario) -> None:
+    one_bounce = with_force(walk(), lambda force, time: np.where((time > 4.05) & (time < 4.08), 0, force))
+    measures = {measure.name: measure for measure in compare(one_bounce, scenario).measures}
+    assert measures["contact lost after heel strike"].value == pytest.approx(0.025, abs=0.006)
+    assert measures["step length"].value == pytest.approx(measures["step length"].values.mean())
 
 
 def test_measures_of_a_walk_are_as_it_was_made(walk: Callable[..., Any], scenario: Scenario) -> None:
@@ -148,7 +249,7 @@ def test_measures_of_a_walk_are_as_it_was_made(walk: Callable[..., Any], scenari
         "center of mass, vertical range": 0.036,
         "center of mass, lateral range": 0.04,
         "vertical GRF, first peak": 1.1,
-        "vertical GRF, valley": 0.8,
+        "vertical GRF, dip": 0.8,
         "share of stances with two peaks": 1.0,
         "moment, hip flexion": 0.5,
         "moment, ankle plantarflexion": 0.5,
@@ -161,7 +262,10 @@ def test_measures_of_a_walk_are_as_it_was_made(walk: Callable[..., Any], scenari
 def test_walk_of_human_angles_is_within_the_human_ranges(walk: Callable[..., Any], scenario: Scenario) -> None:
     """The walk made of people's angles and of textbook steps lies within people's values, where there are any."""
     measures = {measure.name: measure for measure in compare(walk(), scenario).measures}
-    for name in ("speed", "step length", "least knee flexion, terminal stance", "center of mass, lateral range"):
+    for name in (
+        *("speed", "share of stance", "share of double support", "step width"),
+        *("least knee flexion, terminal stance", "center of mass, lateral range"),
+    ):
         people = measures[name].people
         assert people.source
         assert people.low <= measures[name].values.mean() <= people.high, name
@@ -178,10 +282,9 @@ def test_drift_is_no_excursion(walk: Callable[..., Any]) -> None:
 
 @pytest.mark.parametrize("direction", ["vertical", "lateral"])
 def test_human_excursion_is_given_between_the_speeds_of_the_source(direction: str) -> None:
-    assert people_com_excursion(direction, 0.6) is None
-    assert people_com_excursion(direction, 1.7) is None
-    slow, fast = people_com_excursion(direction, 0.7), people_com_excursion(direction, 1.6)
-    middle = people_com_excursion(direction, 1.15)
+    assert people_com_excursion(direction, Pace(0.6, LEG)) is None
+    assert people_com_excursion(direction, Pace(1.7, LEG)) is None
+    slow, middle, fast = (people_com_excursion(direction, Pace(speed, LEG)) for speed in (0.7, 1.15, 1.6))
     assert middle.low == pytest.approx((slow.low + fast.low) / 2)
     # A faster walk rises more and sways less.
     assert (fast.high > slow.high) == (direction == "vertical")
@@ -224,4 +327,4 @@ def test_record_that_is_sampled_slowly_is_compared_too(walk: Callable[..., Any],
     rows = np.arange(0, walk().num_rows, 10)
     measures = {measure.name: measure.values for measure in compare(walk().take(rows), scenario).measures}
     assert measures["cadence"] == pytest.approx(120 / STRIDE, rel=0.02)
-    assert np.isfinite(measures["vertical GRF, valley"]).all()
+    assert np.isfinite(measures["vertical GRF, dip"]).all()

@@ -12,8 +12,10 @@ import pytest
 from matplotlib.lines import Line2D
 from PIL import Image, ImageFilter
 
-from humanwalk.measures.human_likeness import ANGLES, CYCLE, people
+from humanwalk.measures.curves import ANGLES
+from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.signals import TIME
+from humanwalk.measures.walk_measures import Walk
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
@@ -29,13 +31,16 @@ PERIOD = 0.01
 STRIDE = 0.6
 WEIGHT = 70 * 9.81
 
-NEED_STRIDES = {"joint_torques", "gait_cycle_angles", "gait_cycle_pelvis", "joint_power"}
+NEED_STRIDES = {
+    *("joint_torques", "gait_cycle_angles", "gait_cycle_pelvis", "gait_cycle_hip_and_foot"),
+    *("gait_cycle_moments", "gait_cycle_powers", "cop_under_soles"),
+}
 NEED_STEADY_WALK = {"tracking_error"}
 NEED_SUPPORT = {"support_force", "support_torque"}
 
 THESIS_NAMES = {name for name in PLOTS if name.startswith("figure_5_")}
 
-UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]", "[W/kg]")
+UNITS = ("[s]", "[deg]", "[N m]", "[cm]", "[N]", "[m]", "[%]", "[W/kg]", "[N m/kg]")
 
 
 def made_up_signals(columns: tuple[str, ...], duration: float) -> pa.Table:
@@ -338,15 +343,15 @@ def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_hu
     figure = PLOTS["gait_cycle_angles"](run)
     for axes, name in zip(figure.axes, ("hip", "knee", "ankle"), strict=True):
         (shown,) = (line for line in axes.get_lines() if line.get_label().startswith("right"))
-        angle = ANGLES[name].of(run.signals, "Right")
+        angle = ANGLES[name].of(run.signals, "Right", run.scenario.subject.mass)
         # Every stride of the made-up walk is the same sine.
         assert np.ptp(shown.get_ydata()) == pytest.approx(np.ptp(angle), rel=0.02)
         np.testing.assert_allclose(shown.get_xdata(), CYCLE)
         assert shown.get_ydata()[0] == pytest.approx(shown.get_ydata()[-1], abs=0.05 * np.ptp(angle))
-        _, mean, sd = people(ANGLES[name].people)
+        people = ANGLES[name].people(Walk.of(run.signals, run.scenario).pace.group)
         band = axes.collections[0].get_paths()[0].vertices
-        assert band[:, 1].max() == pytest.approx((mean + sd).max())
-        assert band[:, 1].min() == pytest.approx((mean - sd).min())
+        assert band[:, 1].max() == pytest.approx((people.mean + people.sd).max())
+        assert band[:, 1].min() == pytest.approx((people.mean - people.sd).min())
 
 
 def test_power_is_torque_times_rate_per_mass(make_run: Callable[..., Any]) -> None:
@@ -356,7 +361,7 @@ def test_power_is_torque_times_rate_per_mass(make_run: Callable[..., Any]) -> No
         columns["RightLegTibiaMotion.velocity_rad_s"] = np.full(len(signals), -2.0)
         return pa.table(columns)
 
-    knee = PLOTS["joint_power"](make_run(change=steady_power)).axes[1]
+    knee = PLOTS["gait_cycle_powers"](make_run(change=steady_power)).axes[1]
     (shown,) = (line for line in knee.get_lines() if line.get_label().startswith("right"))
     np.testing.assert_allclose(shown.get_ydata(), -1.0)  # type: ignore[arg-type]
 
@@ -373,9 +378,11 @@ REVIEWED = (
     "figure_5_08_right_knee_angle",
     "figure_5_17_left_foot_y",
     "gait_cycle_angles",
-    "joint_power",
+    "gait_cycle_moments",
+    "gait_cycle_powers",
     "ground_reaction",
     "center_of_pressure",
+    "cop_under_soles",
     "support_force",
     "joint_torques",
     "tracking_error",

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from humanwalk.cli.main import app
-from humanwalk.measures.human_likeness import ANGLES
+from humanwalk.measures.curves import CURVES
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -22,6 +22,8 @@ from humanwalk.run.stored import required_columns
 from humanwalk.scenario import load_scenario
 from humanwalk.view.report import (
     CURVE_HEADER,
+    FIGURES,
+    GROUPS,
     MEASURE_HEADER,
     REPORT,
     compare_run,
@@ -56,11 +58,12 @@ def report(*arguments: Path | str) -> Any:
     return CliRunner().invoke(app, ["report", *map(str, arguments)], env={"COLUMNS": "120"})
 
 
-def test_every_angle_and_measure_has_a_row(make_run: Callable[..., Any]) -> None:
+def test_every_curve_and_measure_has_a_row(make_run: Callable[..., Any]) -> None:
     comparison = compare_run(make_run())
-    angles, measures = list(curve_rows(comparison)), list(measure_rows(comparison))
-    assert [row[0].split(",")[0] for row in angles] == list(ANGLES)
-    assert all(len(row) == len(CURVE_HEADER) for row in angles)
+    curves = [row for group in GROUPS.values() for row in curve_rows(comparison, group)]
+    measures = list(measure_rows(comparison))
+    assert [row[0].split(",")[0] for row in curves] == list(CURVES)
+    assert all(len(row) == 1 + len(CURVE_HEADER) for row in curves)
     assert [row[0].split(" [")[0] for row in measures] == [measure.name for measure in comparison.measures]
     assert all(len(row) == len(MEASURE_HEADER) for row in measures)
 
@@ -69,8 +72,9 @@ def test_rows_have_value_human_range_and_source(make_run: Callable[..., Any]) ->
     comparison = compare_run(make_run())
     rows = {row[0]: row[1:] for row in measure_rows(comparison)}
     assert rows["speed [m/s]"][:2] == ("1.30 ± 0.00", "1.28 to 1.43")
-    assert rows["step width [m]"][:2] == ("0.120 ± 0.000", "0.121")
-    assert "Donelan" in sources(comparison)[int(rows["step width [m]"][2]) - 1]
+    assert rows["step width [m]"][:2] == ("0.120 ± 0.000", "0.102 to 0.159")
+    assert rows["CoP backward [m]"][0] == "at most 0.000"
+    assert "Schulz" in sources(comparison)[int(rows["step width [m]"][2]) - 1]
     # No value without a source, no source without a value.
     assert all((row[1] == "") == (row[2] == "") for row in rows.values())
     assert rows["moment, knee extension [N m/kg]"][1:] == ("", "")
@@ -79,9 +83,11 @@ def test_rows_have_value_human_range_and_source(make_run: Callable[..., Any]) ->
 def test_json_is_stride_by_stride(make_run: Callable[..., Any]) -> None:
     told = to_json(compare_run(make_run()))
     assert told["strides"] == {"right": 7, "left": 7}
-    for sides in told["angles"].values():
-        for numbers in sides.values():
-            assert {len(values) for values in numbers.values()} == {7}
+    for curve in told["curves"].values():
+        for side in ("right", "left"):
+            assert {len(values) for values in curve[side].values()} == {7}
+    assert told["people"] == "free"
+    assert 0.0 < told["score"] < 1.0
     assert len(told["measures"]["step width"]["values"]) == 16
     assert told["measures"]["step width"]["people"]["source"]
     json.dumps(told, allow_nan=False)
@@ -93,8 +99,8 @@ def test_constant_angle_has_no_correlation(make_run: Callable[..., Any]) -> None
     still = [np.full(run.signals.num_rows, 0.3)]
     signals = run.signals.set_column(run.signals.column_names.index(knee), knee, still)
     told = to_json(compare_run(Outcome(run.scenario, signals, "completed", 1.0).write(run.path)))
-    assert told["angles"]["knee"]["right"]["correlation"] == [None] * 7
-    assert None not in told["angles"]["knee"]["right"]["rms_deg"]
+    assert told["curves"]["knee"]["right"]["correlation"] == [None] * 7
+    assert None not in told["curves"]["knee"]["right"]["rms"]
 
 
 def test_page_is_self_contained(make_run: Callable[..., Any]) -> None:
@@ -103,7 +109,7 @@ def test_page_is_self_contained(make_run: Callable[..., Any]) -> None:
     assert "A &lt;b&gt;walk&lt;/b&gt;" in page
     assert "$" not in html.unescape(re.sub(r'src="[^"]*"', "", page))
     links = re.findall(r'(?:src|href)="([^"]*)"', page)
-    assert len(links) == 3
+    assert len(links) == len(FIGURES)
     for link in links:
         kind, data = link.split(",")
         assert kind == "data:image/svg+xml;base64"
@@ -117,7 +123,8 @@ def test_command_writes_the_page_and_prints_the_tables(make_run: Callable[..., A
     assert result.exit_code == 0
     assert "knee, flexion" in result.stdout
     assert "cadence [1/min]" in result.stdout
-    assert "Donelan" in result.stdout
+    assert "Schulz" in result.stdout
+    assert re.search(r"Score \d+ %.*9 curves", " ".join(result.stdout.split()))
     assert str(run.path / REPORT) in result.stderr
     assert (run.path / REPORT).is_file()
 

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from humanwalk.body import Side
 from humanwalk.body.visuals import SIDE_COLORS
 from humanwalk.files import write_whole
 from humanwalk.numerics import Array, Mask
@@ -24,6 +25,8 @@ DPI = 160
 
 SIDE = SIDE_COLORS
 """Right is blue, left is orange, as on the body."""
+WIDTH: dict[Side, float] = {"Right": 2.2, "Left": 0.9}
+"""Widths of curves: a walk is nearly symmetric, and the right one has to be visible behind the left one."""
 AXIS_COLORS = {"x": "#1b7837", "y": "#762a83", "z": "#404040"}
 """Colors of x, y, z in W, distinct from those of the two sides."""
 INK = "#202020"

@@ -1,14 +1,16 @@
 """Curves of several runs in one figure."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
+from humanwalk.measures.curves import ANGLES, Curve, over_strides
 from humanwalk.measures.events import events_of
-from humanwalk.measures.human_likeness import ANGLES, CYCLE, over_strides
+from humanwalk.measures.normative import CYCLE
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
@@ -30,7 +32,7 @@ def gait_cycle_angles(runs: Sequence[Run], names: Sequence[str]) -> Figure | Non
         angle = ANGLES[joint]
         level(axes, 0.0)
         for run, name, color in _each(runs, names):
-            _mean_curve(axes, run, lambda side, run=run, angle=angle: angle.of(run.signals, side), name, color)  # type: ignore[misc]
+            _mean_curve(axes, run, partial(_of_leg, run, angle), name, color)
         axes.set_title(joint, fontsize=LABEL_SIZE, pad=3)
         label(axes, "gait cycle [%]", f"{angle.positive} [deg]")
     return _with_legend(figure)
@@ -63,6 +65,10 @@ OVERLAYS: dict[str, Overlay] = {
     "forward_velocity": forward_velocity,
 }
 """Figures of several runs by name."""
+
+
+def _of_leg(run: Run, angle: Curve, side: Side) -> Array:
+    return angle.of(run.signals, side, run.scenario.subject.mass)
 
 
 def _each(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Run, str, str]]:

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
 from humanwalk.choices import ThesisController
+from humanwalk.measures.curves import joint_signal
 from humanwalk.measures.events import events_of
-from humanwalk.measures.human_likeness import joint_signal
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import DESIRED, SIDE, curve, label, legend, level, new_figure, shade
 

@@ -10,8 +10,16 @@ from humanwalk.files import make_folder
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import FORMATS, save
+from humanwalk.view.plots.gait_cycle import (
+    gait_cycle_angles,
+    gait_cycle_hip_and_foot,
+    gait_cycle_moments,
+    gait_cycle_pelvis,
+    gait_cycle_powers,
+)
 from humanwalk.view.plots.ground import center_of_pressure, ground_reaction, support
-from humanwalk.view.plots.joints import gait_cycle_angles, gait_cycle_pelvis, joint_power, joint_torques, tracking_error
+from humanwalk.view.plots.joints import joint_torques, tracking_error
+from humanwalk.view.plots.soles import cop_under_soles
 from humanwalk.view.plots.thesis_figures import THESIS_PLOTS
 
 PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
@@ -19,9 +27,12 @@ PLOTS: dict[str, Callable[[Run], Figure | None]] = THESIS_PLOTS | {
     "support_torque": partial(support, what="torque"),
     "gait_cycle_angles": gait_cycle_angles,
     "gait_cycle_pelvis": gait_cycle_pelvis,
-    "joint_power": joint_power,
+    "gait_cycle_hip_and_foot": gait_cycle_hip_and_foot,
+    "gait_cycle_moments": gait_cycle_moments,
+    "gait_cycle_powers": gait_cycle_powers,
     "ground_reaction": ground_reaction,
     "center_of_pressure": center_of_pressure,
+    "cop_under_soles": cop_under_soles,
     "joint_torques": joint_torques,
     "tracking_error": tracking_error,
 }

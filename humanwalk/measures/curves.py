@@ -1,0 +1,134 @@
+"""Curves over the gait cycle as gait laboratories define them: angles, internal moments and powers of a leg.
+
+Pelvic tilt and hip flexion are those of the anatomical pelvic plane (`humanwalk.body.pelvic_plane`), not of the model's
+pelvis frame. The pelvis turns by rotation, obliquity, tilt in this order: Baker (2001), Gait Posture 13:1-6. Moments
+are the torques of the sagittal joints per body mass, powers these torques times the rates of the same joints.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from operator import attrgetter
+
+import numpy as np
+import pyarrow as pa
+
+from humanwalk.body import Side
+from humanwalk.body.limbs import LEGS, Leg
+from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.measures.events import FootEvents
+from humanwalk.measures.normative import CYCLE, Band, SpeedGroup, people
+from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
+from humanwalk.numerics import Array
+
+JOINTS: dict[str, Callable[[Leg], str]] = {
+    "hip": attrgetter("hip_flexion"),
+    "knee": attrgetter("knee"),
+    "ankle": attrgetter("ankle"),
+}
+"""The sagittal joint of a leg by its name in ANGLES; positive in flexion and dorsiflexion."""
+
+
+def joint_signal(signals: pa.Table, joint: str, side: Side, quantity: str) -> Array:
+    """A signal of one of JOINTS, shape (rows,): its angle_rad, velocity_rad_s or torque_N_m."""
+    values: Array = signals[f"{JOINTS[joint](LEGS[side])}.{quantity}"].to_numpy()
+    return values
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve over the gait cycle that is compared with people's.
+
+    Attributes:
+        positive: its positive sense.
+        unit: of its values.
+        quantity: its name in the human data.
+        of: the values of a record relative to one leg, with the body mass [kg], shape (rows,).
+        people_scale: factor from the unit of the human data to `unit`.
+    """
+
+    positive: str
+    unit: str
+    quantity: str
+    of: Callable[[pa.Table, Side, float], Array]
+    people_scale: float = 1.0
+
+    def people(self, group: SpeedGroup) -> Band:
+        """People's curve in this unit."""
+        band = people(self.quantity, group)
+        return Band(self.people_scale * band.mean, self.people_scale * band.sd)
+
+
+def _joint(
+    joint: Callable[[Leg], str], factor: float, zero: float, signals: pa.Table, side: Side, mass: float
+) -> Array:
+    angle: Array = signals[f"{joint(LEGS[side])}.angle_rad"].to_numpy()
+    return np.degrees(factor * angle + zero)
+
+
+def _pelvis(axis: int, left: int, right: int, zero: float, signals: pa.Table, side: Side, mass: float) -> Array:
+    angles: Array = pelvis_rotation(signals).as_euler("ZXY")[:, axis]
+    return np.degrees(angles * (left if side == "Left" else right) + zero)
+
+
+def _progression(signals: pa.Table, side: Side, mass: float) -> Array:
+    forward = sole_rotation(signals, side).apply((1.0, 0.0, 0.0))
+    angle: Array = np.degrees(np.arctan2(forward[:, 1], forward[:, 0]))
+    return angle if side == "Right" else -angle
+
+
+def _moment(joint: str, signals: pa.Table, side: Side, mass: float) -> Array:
+    return -joint_signal(signals, joint, side, "torque_N_m") / mass
+
+
+def _power(joint: str, signals: pa.Table, side: Side, mass: float) -> Array:
+    torque, rate = (joint_signal(signals, joint, side, what) for what in ("torque_N_m", "velocity_rad_s"))
+    return torque * rate / mass
+
+
+ANGLES = {
+    "hip": Curve("flexion", "deg", "hip_flexion_deg", partial(_joint, JOINTS["hip"], 1.0, PELVIC_TILT)),
+    "knee": Curve("flexion", "deg", "knee_flexion_deg", partial(_joint, JOINTS["knee"], 1.0, 0.0)),
+    "ankle": Curve("dorsiflexion", "deg", "ankle_dorsiflexion_deg", partial(_joint, JOINTS["ankle"], 1.0, 0.0)),
+    "hip adduction": Curve(
+        "adduction", "deg", "hip_adduction_deg", partial(_joint, attrgetter("hip_abduction"), -1.0, 0.0)
+    ),
+    "hip rotation": Curve(
+        "internal", "deg", "hip_internal_rotation_deg", partial(_joint, attrgetter("hip_rotation"), 1.0, 0.0)
+    ),
+    "foot progression": Curve("internal", "deg", "foot_internal_progression_deg", _progression),
+    "pelvis tilt": Curve("forward", "deg", "pelvis_anterior_tilt_deg", partial(_pelvis, 2, 1, 1, PELVIC_TILT)),
+    "pelvis obliquity": Curve("side up", "deg", "pelvis_up_obliquity_deg", partial(_pelvis, 1, 1, -1, 0.0)),
+    "pelvis rotation": Curve("side forward", "deg", "pelvis_internal_rotation_deg", partial(_pelvis, 0, -1, 1, 0.0)),
+}
+"""Angles by name [deg].
+
+The thigh flexes about the lateral axis of the pelvis before its other turns, and the pelvis tilts about the same axis
+after its others: both angles of the pelvic plane are those of the pelvis frame plus a constant.
+"""
+
+MOMENTS = {
+    f"{joint} moment": Curve(
+        positive, "N m/kg", f"{joint}_{quantity}_moment_Nmm_per_kg", partial(_moment, joint), people_scale=1e-3
+    )
+    for joint, positive, quantity in (
+        ("hip", "extensor", "extensor"),
+        ("knee", "extensor", "extensor"),
+        ("ankle", "plantarflexor", "plantarflexor"),
+    )
+}
+"""Internal moments of the sagittal joints by name."""
+
+POWERS = {
+    f"{joint} power": Curve("delivered", "W/kg", f"{joint}_power_W_per_kg", partial(_power, joint)) for joint in JOINTS
+}
+"""Powers of the sagittal joints by name."""
+
+CURVES = ANGLES | MOMENTS | POWERS
+
+
+def over_strides(foot: FootEvents, values: Array) -> Array:
+    """A signal over every whole stride of a leg at the points of CYCLE, shape (strides, 101)."""
+    time = foot.time
+    strides = [np.interp(time[a] + CYCLE / 100.0 * (time[b] - time[a]), time, values) for a, b in foot.strides]
+    return np.array(strides).reshape(-1, CYCLE.size)
