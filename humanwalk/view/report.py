@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from rich import box
-from rich.table import Table
+from rich.table import Column, Table
 
 from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS, POWERS, Curve
 from humanwalk.measures.human_likeness import MIN_STRIDES, SCORED, Comparison, compare, pooled
@@ -29,6 +29,9 @@ FIGURES = (
     "ground_reaction",
 )
 
+SPREAD = " ± "
+"""Between a mean and a standard deviation."""
+
 UP_AT_ITS_END = ("completed", "interrupted", "unfinished")
 
 GROUPS: dict[str, Mapping[str, Curve]] = {
@@ -37,7 +40,7 @@ GROUPS: dict[str, Mapping[str, Curve]] = {
     "power [W/kg]": POWERS,
 }
 """Curves by the heading of their table."""
-CURVE_HEADER = ("correlation", "difference", "rms", "within 1 SD [%]", "within 2 SD [%]", "peak / human")
+CURVE_HEADER = ("corr.", "diff.", "rms", "1 SD [%]", "2 SD [%]", "peak")
 MEASURE_HEADER = ("measure", "run", "human", "source")
 
 DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2, "W/kg": 2, "s": 3}
@@ -46,9 +49,10 @@ DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2,
 NOTES = (
     "Run: mean ± standard deviation over the steps, strides or stances of both legs in steady walking; 'at most' is "
     "the greatest of them.",
-    "Difference, rms: the run's curve minus the human mean; within 1 SD, 2 SD: fraction of the cycle, 68 and 95 % for "
-    "humans; peak / human: greatest magnitude over that of the human mean. The score is the mean of the nine fractions "
-    "within 1 SD of hip, knee and ankle: angles, moments, powers.",
+    "Corr.: correlation with the human mean over the cycle. Diff., rms: the run's curve minus the human mean. 1 SD, "
+    "2 SD: fraction of the cycle within them of the human mean, 68 and 95 % for humans. Peak: greatest magnitude over "
+    "that of the human mean. The score is the mean of the nine fractions within 1 SD of hip, knee and ankle: angles, "
+    "moments, powers.",
     "Human curves: Schwartz, Rozumalski, Trost (2008), children, whose curves have the shape of adults' at the same "
     "dimensionless speed, by which their group is chosen.",
     "Hip flexion and pelvic tilt are those of the plane through the iliac spines, which tilts 11 degrees forward in "
@@ -112,9 +116,10 @@ def terminal_tables(comparison: Comparison) -> list[Table]:
     """Tables for a terminal: score and curves, then measures with their sources."""
     tables = []
     for heading, curves in GROUPS.items():
-        tables.append(Table(heading, *CURVE_HEADER, box=box.SIMPLE))
+        tables.append(Table(Column(heading, min_width=29), *CURVE_HEADER, box=box.SIMPLE, padding=(0, 0, 0, 1)))
         for row in curve_rows(comparison, curves):
-            tables[-1].add_row(*row)
+            # Without the spread between strides, a terminal of 80 columns has room for the row.
+            tables[-1].add_row(*(cell.split(SPREAD)[0] for cell in row))
     tables[0].title = score_text(comparison)
     tables[0].title_justify = "left"
     caption = "\n".join((*(f"{number} {cited}" for number, cited in enumerate(sources(comparison), 1)), "", *NOTES))
@@ -201,7 +206,7 @@ def _spread(values: Array, form: str) -> str:
     if not values.size:
         return "-"
     mean = format(values.mean(), form)
-    return mean if values.size == 1 else f"{mean} ± {format(values.std(), form)}"
+    return mean if values.size == 1 else f"{mean}{SPREAD}{format(values.std(), form)}"
 
 
 def _numbers(values: Array) -> list[float | None]:
