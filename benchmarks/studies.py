@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+import likeness as human_likeness
 import numpy as np
 from actuation_figure import tracking_by_group
 from matplotlib.figure import Figure
@@ -49,7 +50,8 @@ KEPT_OF = {
         "torque_rms_N_m",
         "pelvis_tracking_rms_m",
         "peak_torque_N_m.RightLegFemurMotion",
-    )
+    ),
+    human_likeness.STUDY: human_likeness.COLUMNS,
 }
 """Further columns of single studies."""
 
@@ -190,6 +192,13 @@ def actuations() -> str:
     return study_table("actuations", headings, line)
 
 
+def likeness() -> str:
+    def section(rows: list[dict[str, Any]]) -> str:
+        return table(human_likeness.headings(rows), human_likeness.lines(rows, "**{}**".format))
+
+    return study_section(human_likeness.STUDY, section)
+
+
 def study_table(name: str, headings: Sequence[str], line: Callable[[dict[str, Any]], list[str]]) -> str:
     """Table of the rows of a study, a line for each."""
     return study_section(name, lambda rows: table(headings, map(line, rows)))
@@ -269,6 +278,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_seeds,
         balance_invariance,
     ),
+    "likeness.md": (likeness,),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }

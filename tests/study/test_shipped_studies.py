@@ -38,6 +38,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("push_random", 100),
         ("thesis_step_height", 9),
         ("actuations", 3),
+        ("likeness", 6),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:

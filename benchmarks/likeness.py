@@ -1,0 +1,213 @@
+"""How near the balanced walk is to human gait, beside the goals: python benchmarks/likeness.py [FOLDER]
+
+Runs the shipped study `likeness` into the folder (runs/likeness), or resumes it, and prints the table. Robustness is
+that of the kept results of the shipped balance studies.
+"""
+
+import csv
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from humanwalk.body import human
+from humanwalk.measures.curves import JOINTS
+from humanwalk.measures.walk_measures import MEASURES, Pace
+from humanwalk.study.row import likeness_columns
+from humanwalk.study.study import load_study
+
+STUDY = "likeness"
+RESULTS = Path(__file__).parent / "results"
+CONTACT, FORWARD = "contact", "controller.balanced.command.points.0.forward"
+
+COLUMNS = tuple(f"likeness.{name}" for name in likeness_columns())
+"""Columns of the study's table that the goals need, besides the usual ones."""
+
+Row = Mapping[str, Any]
+Limits = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A goal of human likeness.
+
+    Attributes:
+        name: what is measured.
+        without, with_style: the goal of a walk without a style, and of one that follows human curves, as text.
+        values: of a row of the study.
+        limits: of each value, without a style.
+        form: of a value.
+        speeds: at which the goal counts; empty for all.
+    """
+
+    name: str
+    without: str
+    with_style: str
+    values: Callable[[Row], Sequence[float]]
+    limits: Callable[[Row], Sequence[Limits]]
+    form: str = ".2f"
+    speeds: tuple[float, ...] = ()
+
+    def reached(self, row: Row) -> bool | None:
+        """Whether a row reaches the goal; None where it does not count."""
+        if self.speeds and row[FORWARD] not in self.speeds:
+            return None
+        return all(low <= value <= high for value, (low, high) in zip(self.values(row), self.limits(row), strict=True))
+
+    def shown(self, row: Row) -> str:
+        """The values of a row as text."""
+        return " ".join(format(value, self.form) for value in self.values(row))
+
+
+def _values(*columns: str, scale: float = 1.0) -> Callable[[Row], list[float]]:
+    def of(row: Row) -> list[float]:
+        values = (row[f"likeness.{column}"] for column in columns)
+        return [np.nan if value is None else scale * value for value in values]
+
+    return of
+
+
+def _percent(quantity: str) -> Callable[[Row], list[float]]:
+    """Within one standard deviation, by joint."""
+    return _values(*(f"{joint}{quantity}.within_1_sd" for joint in JOINTS), scale=100.0)
+
+
+def _of_joints(quantity: str, measure: str) -> Callable[[Row], list[float]]:
+    return _values(*(f"{joint}{quantity}.{measure}" for joint in JOINTS))
+
+
+def _mean(values: Callable[[Row], list[float]]) -> Callable[[Row], list[float]]:
+    return lambda row: [float(np.mean(values(row)))]
+
+
+def _from(*lows: float) -> Callable[[Row], list[Limits]]:
+    return lambda row: [(low, np.inf) for low in lows]
+
+
+def _to(*highs: float) -> Callable[[Row], list[Limits]]:
+    return lambda row: [(-np.inf, high) for high in highs]
+
+
+def _between(*limits: Limits) -> Callable[[Row], list[Limits]]:
+    return lambda row: list(limits)
+
+
+def _within_people(name: str, form: str) -> Goal:
+    """A measure that has to be within the human range at the speed of the row."""
+    (kind,) = (kind for kind in MEASURES if kind.name == name)
+
+    def limits(row: Row) -> list[Limits]:
+        people = kind.people(Pace(row["likeness.speed_m_s"], human().hip_height))
+        assert people is not None
+        return [(people.low, people.high)]
+
+    heading = f"{name} [{kind.unit}]" if kind.unit else name
+    return Goal(heading, "human 1 SD", "human 1 SD", _values(kind.column), limits, form)
+
+
+PEAKS = _values("vertical_GRF_first_peak_BW", "vertical_GRF_second_peak_BW")
+TWO_PEAKS = _values("share_of_stances_with_two_peaks", scale=100.0)
+LOST = _values("contact_lost_after_heel_strike_s", scale=1e3)
+MOMENTS = "_moment"
+
+GOALS = (
+    Goal("angles within 1 SD, mean [%]", ">= 75", ">= 88", _mean(_percent("")), _from(75.0), ".0f"),
+    Goal("angles within 1 SD: hip, knee, ankle [%]", ">= 60", ">= 80", _percent(""), _from(60.0, 60.0, 60.0), ".0f"),
+    Goal("angles, correlation", ".97 .95 .90", ".98 .98 .95", _of_joints("", "correlation"), _from(0.97, 0.95, 0.9)),
+    Goal("moments within 1 SD, mean [%]", ">= 65", ">= 75", _mean(_percent(MOMENTS)), _from(65.0), ".0f"),
+    Goal("moments, correlation", ".9 .7 .95", ".9 .75 .95", _of_joints(MOMENTS, "correlation"), _from(0.9, 0.7, 0.95)),
+    Goal("moments, peak / human", "<= 1.4", "<= 1.3", _of_joints(MOMENTS, "peak_ratio"), _to(1.4, 1.4, 1.4)),
+    Goal("powers within 1 SD, mean [%]", ">= 60", ">= 65", _mean(_percent("_power")), _from(60.0), ".0f"),
+    Goal("vertical GRF, peaks [BW]", "1.05 to 1.25", "same", PEAKS, _between((1.05, 1.25), (1.05, 1.25))),
+    Goal("vertical GRF, dip [BW]", "0.7 to 0.9", "same", _values("vertical_GRF_dip_BW"), _between((0.7, 0.9))),
+    Goal("stances with two peaks [%]", "100", "same", TWO_PEAKS, _from(100.0), ".0f"),
+    Goal("contact lost after heel strike, at most [ms]", "0", "same", LOST, _to(0.0), ".0f"),
+    Goal("CoP backward, at most [cm]", "<= 1", "same", _values("CoP_backward_m", scale=100.0), _to(1.0), ".1f"),
+    _within_people("share of stance", ".3f"),
+    _within_people("share of double support", ".3f"),
+    _within_people("cadence", ".0f"),
+    _within_people("step length", ".3f"),
+    _within_people("step width", ".3f"),
+    Goal("cost of transport", "<= 0.42", "<= 0.45", _values("cost_of_transport"), _to(0.42), speeds=(1.2,)),
+)
+"""The goals, in the order of the table."""
+
+ROBUSTNESS = {
+    "balance_speeds": ("five speeds, 60 s", "5 of 5"),
+    "balance_seeds": ("seeds", "20 of 20 at each speed"),
+    "balance_pushes": ("pushes of 30 N s", "40 of 40"),
+    "balance_pushes_60": ("pushes of 60 N s", "10 of 10"),
+    "balance_bodies": ("bodies of 50 to 110 kg", "8 of 8"),
+}
+"""Shipped studies: what they are, and the goal."""
+
+
+def headings(rows: Sequence[Row]) -> list[str]:
+    """Of the table: the goals, then each run."""
+    return ["", "without style", "with style", *(f"{row[CONTACT]} {row[FORWARD]:g} m/s" for row in rows)]
+
+
+def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]]:
+    """Lines of the table; `mark` marks values that reach the goal of a walk without a style.
+
+    A run that fell, or whose strides cannot be compared, has no values.
+    """
+    compared = [row["likeness.score"] is not None for row in rows]
+    reached = {
+        goal.name: [goal.reached(row) if found else None for row, found in zip(rows, compared, strict=True)]
+        for goal in GOALS
+    }
+    for goal in GOALS:
+        shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, reached[goal.name], strict=True))
+        cells = (mark(text) if each else text for text, each in zip(shown, reached[goal.name], strict=True))
+        yield [goal.name, goal.without, goal.with_style, *cells]
+    scores = [row["likeness.score"] for row in rows]
+    yield ["score [%]", "", "", *("-" if score is None else f"{100.0 * score:.0f}" for score in scores)]
+    by_run = ([each[run] for each in reached.values()] for run in range(len(rows)))
+    yield [
+        "goals reached",
+        "",
+        "",
+        *(f"{of_run.count(True)} of {len(GOALS) - of_run.count(None)}" for of_run in by_run),
+    ]
+
+
+def robustness() -> Iterator[tuple[str, str, str]]:
+    """Name, goal and survived runs of the kept results of the balance studies."""
+    for study, (name, goal) in ROBUSTNESS.items():
+        with (RESULTS / f"{study}.csv").open(encoding="utf-8", newline="") as file:
+            survived = [row["survived"].lower() == "true" for row in csv.DictReader(file)]
+        yield f"{name} ({study})", goal, f"{sum(survived)} of {len(survived)}"
+
+
+def main(folder: Path) -> None:
+    """Run or resume the study, and print the table."""
+    from humanwalk.cli.common import counted_progress
+    from humanwalk.study.cluster import local_client
+    from humanwalk.study.execute import run_study
+
+    study = load_study(STUDY)
+    with local_client(None) as client, counted_progress("runs", estimate_period=600.0) as progress:
+        task = progress.add_task(STUDY, total=len(study.points))
+        done = run_study(study, folder, client, lambda count, total, row: progress.update(task, completed=count))
+    rows = done.to_pylist()
+    console = Console(width=200 if not sys.stdout.isatty() else None)
+    shown = Table(*headings(rows), box=box.SIMPLE, title="✓: reaches the goal without style")
+    for line in lines(rows, "{} ✓".format):
+        shown.add_row(*map(escape, line))
+    console.print(shown)
+    kept = Table("robustness", "goal", "survived", box=box.SIMPLE)
+    for row in robustness():
+        kept.add_row(*row)
+    console.print(kept)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path("runs") / STUDY)
