@@ -48,7 +48,14 @@ CLIP = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.
 SIDE = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.0, view="side")
 
 SHOTS = {
-    "walk": Shot("walk", video=CLIP, figures=("gait_cycle_angles", "gait_cycle_pelvis", "ground_reaction")),
+    "walk": Shot(
+        "walk",
+        video=CLIP,
+        figures=(
+            *("gait_cycle_angles", "gait_cycle_moments", "gait_cycle_powers", "gait_cycle_pelvis"),
+            *("cop_under_soles", "ground_reaction"),
+        ),
+    ),
     "brisk": Shot("brisk", video=SIDE, figures=("gait_cycle_angles",)),
     "push": Shot(
         "push",
@@ -59,7 +66,7 @@ SHOTS = {
         "thesis",
         video=CLIP,
         figures=(
-            *("gait_cycle_angles", "joint_power", "ground_reaction", "center_of_pressure"),
+            *("gait_cycle_angles", "gait_cycle_powers", "ground_reaction", "center_of_pressure"),
             *("support_force", "joint_torques"),
         ),
     ),
