@@ -8,6 +8,7 @@ was ended by kill -9, and after kill -9 its last checkpoint has to be readable (
 
 import argparse
 import json
+import os
 import random
 import signal
 import subprocess
@@ -99,6 +100,7 @@ def kill(place: Path, index: int, seed: int) -> tuple[str, list[str]]:
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
+        env={**os.environ, "PYTHONFAULTHANDLER": "1"},
     )
     wait_for_folder = draw.random() < 0.75
     while wait_for_folder and not folder.exists() and process.poll() is None:
@@ -108,9 +110,10 @@ def kill(place: Path, index: int, seed: int) -> tuple[str, list[str]]:
     try:
         _, errors = process.communicate(timeout=PATIENCE)
     except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        return f"{number.name} ignored", [f"did not end in {PATIENCE:g} s"]
+        # Python prints where it is.
+        process.send_signal(signal.SIGABRT)
+        _, errors = process.communicate()
+        return f"{number.name} ignored", [f"did not end in {PATIENCE:g} s: {errors}"]
     phase = "while walking or writing" if ": walking" in errors else "before it walked"
     phase = "after its end" if process.returncode == 0 else phase
     return f"{number.name} {phase}", complaints(folder, number, errors)
