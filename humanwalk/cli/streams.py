@@ -61,34 +61,41 @@ calls Python's, drops it."""
 WAITING_PERIOD = 0.05
 """Time between two looks at whether such code has ended [s]."""
 
+DROPPED_PERIOD = 5.0
+"""Time after which a signal that should have ended the program is sent again [s]: Python drops an exception that is
+raised in a destructor. Longer than any clean-up."""
+
 
 @contextmanager
 def signals_as_exits() -> Iterator[None]:
     """Within the block, which is the program, SIGTERM and SIGHUP end it like Ctrl-C, unless they are ignored.
 
-    All three wait for the end of imports and log messages; see `NOT_INTERRUPTED`. After the block all is written: a
-    signal ends the process at once, since Python prints tracebacks of exceptions that are raised while it shuts down.
+    All three wait for the end of imports and log messages, see `NOT_INTERRUPTED`, and are sent again if the program
+    goes on, see `DROPPED_PERIOD`. After the block all is written: a signal ends the process at once, since Python
+    prints tracebacks of exceptions that are raised while it shuts down.
     """
-    waiting: list[int] = []
+    again: list[int] = []
 
     def end(number: int, frame: FrameType | None) -> None:
-        if _must_wait(frame):
-            waiting.append(number)
-            signal.setitimer(signal.ITIMER_REAL, WAITING_PERIOD)
-        elif number == signal.SIGINT:
+        waits = _must_wait(frame)
+        again.append(number)
+        signal.setitimer(signal.ITIMER_REAL, WAITING_PERIOD if waits else DROPPED_PERIOD)
+        if waits:
+            return
+        if number == signal.SIGINT:
             raise KeyboardInterrupt
-        else:
-            sys.exit(128 + number)
+        sys.exit(128 + number)
 
     unset = (signal.SIG_DFL, signal.default_int_handler)
     numbers = [n for n in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if signal.getsignal(n) in unset]
     for number in numbers:
         signal.signal(number, end)
     # Sent again, for a simulation may have begun, which handles them itself.
-    signal.signal(signal.SIGALRM, lambda _, frame: os.kill(os.getpid(), waiting.pop(0)))
+    signal.signal(signal.SIGALRM, lambda _, frame: os.kill(os.getpid(), again.pop(0)))
     try:
         yield
     finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number in numbers:
             signal.signal(number, signal.SIG_DFL)
 

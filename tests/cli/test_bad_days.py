@@ -187,6 +187,25 @@ with signals_as_exits():
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal_that_python_drops_is_sent_again(number: Any) -> None:
+    code = f"""{HEAR}
+import os, time
+from humanwalk.cli import streams
+streams.DROPPED_PERIOD = 0.1
+class Dropping:
+    def __del__(self):
+        os.kill(os.getpid(), {int(number)})
+with streams.signals_as_exits():
+    Dropping()
+    print("goes on", flush=True)
+    time.sleep(60)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=50)
+    assert done.stdout == "goes on\n"
+    assert done.returncode in (128 + number, -number)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signal_after_the_end_prints_nothing(number: Any) -> None:
     """Python prints the traceback of an exception that is raised while it shuts down."""
     code = f"""{HEAR}
