@@ -2,7 +2,6 @@
 
 import numpy as np
 import pyarrow as pa
-from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from humanwalk.body import Side
 from humanwalk.measures.events import FootEvents, in_contact
@@ -18,6 +17,9 @@ MIN_DIP = 0.05
 
 def vertical_force(signals: pa.Table, side: Side, weight: float) -> Array:
     """Vertical force on a foot below FORCE_CUTOFF_HZ, without the impact of the heel, over `weight` [N], (rows,)."""
+    # Importing scipy.signal takes half a second, which every walk would wait before its start.
+    from scipy.signal import butter, sosfiltfilt
+
     force: Array = signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / weight
     rate = 1.0 / float(np.median(np.diff(signals[TIME].to_numpy())))
     # A record of fewer than two samples per period of the cutoff holds nothing above it.
@@ -41,6 +43,8 @@ def force_peaks(force: Array, foot: FootEvents) -> Array:
 
 def peak_counts(force: Array, foot: FootEvents) -> Indices:
     """Number of peaks in every whole stance that rise by MIN_DIP from the dips beside them, shape (stances,)."""
+    from scipy.signal import find_peaks
+
     return np.array([find_peaks(force[a:b], prominence=MIN_DIP)[0].size for a, b in foot.stances], dtype=int)
 
 
