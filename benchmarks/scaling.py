@@ -29,8 +29,8 @@ from humanwalk.bench.measure import ONE_THREAD
 from humanwalk.bench.result import machine
 from humanwalk.body import contact_spheres, sdf
 from humanwalk.body.contact import POINT_STIFFNESS, ContactSphere
-from humanwalk.body.plant import Subject
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 from humanwalk.files import write_text
 from humanwalk.scenario import load_scenario
 

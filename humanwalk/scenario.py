@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.choices import (
     ACTUATIONS,
     CONTACTS,

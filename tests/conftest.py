@@ -12,8 +12,9 @@ from scipy.spatial.transform import Rotation
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS, PELVIS, other_side
 from humanwalk.body.pelvic_plane import PELVIC_TILT
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 from humanwalk.control.inverse_kinematics import LegKinematics
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.gait.foot_cycle import FootPathParameters

@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from humanwalk.body.segment_table import segment_rows
+from humanwalk.body.subject import Subject
 from humanwalk.choices import CONTROLLERS, BalancedController, PdActuation
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.parameter_file import build
@@ -132,3 +134,13 @@ def test_the_index_lists_every_decision_with_its_title_and_date() -> None:
         assert date is not None, record.name
         rows.append(f"| [{title.removeprefix('# ')}]({record.name}) | {date[1]} |")
     assert (folder / "index.md").read_text(encoding="utf-8").splitlines()[-len(rows) :] == rows
+
+
+def test_the_table_of_segments_is_the_code() -> None:
+    page = (DOCS / "howto" / "subjects.md").read_text(encoding="utf-8")
+    found = re.findall(r"^\| ([a-z ]+) ((?:\| \d\.\d\d ){4})\|", page, re.MULTILINE)
+    rows = {name.replace(" ", "_"): cells.split("|")[1:] for name, cells in found}
+    for row in segment_rows(Subject()):
+        ratios = [f" {ratio:.2f} " for ratio in row.ratios]
+        assert rows[row.name.removeprefix("right_").removeprefix("left_")] == ratios, row.name
+    assert len(rows) == 10

@@ -10,7 +10,8 @@ from pydrake.math import RigidTransform
 
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.body.limbs import LEGS, PELVIS, Leg
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.signals import matrix
 from humanwalk.numerics import Array

@@ -1,10 +1,10 @@
 """The human as data: segments, skeleton, scaling to a subject, and model files."""
 
-from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
+from humanwalk.body.anatomy import human
 from humanwalk.body.contact import HYDRO_SET, POINT_SET, contact_boxes, contact_spheres, sole_patches
 from humanwalk.body.sdf import MODEL_NAME, to_sdf
 from humanwalk.body.shapes import Box, Cylinder
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
+from humanwalk.body.skeleton import REFERENCE_MASS, REFERENCE_STATURE, Joint, Segment, Skeleton, Weld
 from humanwalk.sides import SIDES, Side
 
 __all__ = [

@@ -9,13 +9,8 @@ side and mirrored.
 import math
 from collections.abc import Sequence
 
-from humanwalk.body.shapes import Box, Cylinder
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
-
-REFERENCE_MASS = 70.0
-"""Body mass of the reference human [kg] (thesis 3.3.1)."""
-REFERENCE_STATURE = 1.75
-"""Stature of the reference human [m] (thesis 3.3.1)."""
+from humanwalk.body.shapes import Box, Cylinder, Vector3
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 
 ROTOR_INERTIA = 0.01
 """Reflected rotor inertia of every actuator [kg m2] (our choice). Without it explicit torques diverge on the connector

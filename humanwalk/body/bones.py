@@ -6,10 +6,10 @@ It is drawn from the skeleton alone, so that it shows the geometry of the comput
 from collections.abc import Iterator
 from dataclasses import replace
 
-from humanwalk.body.anatomy import REFERENCE_STATURE
 from humanwalk.body.contact import contact_spheres
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
-from humanwalk.body.visuals import SIDE_COLORS, Color, Visual, ball, capsule, ellipsoid
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import REFERENCE_STATURE, Joint, Segment, Skeleton, Weld
+from humanwalk.body.visual import SIDE_COLORS, Color, Visual, ball, capsule, ellipsoid
 
 BONE: Color = (0.90, 0.87, 0.78)
 SKULL: Color = (0.93, 0.91, 0.84)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from humanwalk.body.anatomy import REFERENCE_STATURE
-from humanwalk.body.skeleton import Skeleton, Vector3
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
 from humanwalk.sides import SIDES, Side
 
@@ -129,31 +129,31 @@ def sole_extent(skeleton: Skeleton) -> SoleExtent:
 
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
     """Return the point set: medial and lateral spheres below heel, ball and toes of both feet."""
-    scale = skeleton.stature / REFERENCE_STATURE
-    radius = SPHERE_RADIUS * scale
     spheres = []
     for side in SIDES:
+        length, width, height = skeleton.size(f"{side}Leg_Ankle")
+        radius = SPHERE_RADIUS * height
         leftward = 1.0 if side == "Left" else -1.0
         for part in SOLE_PARTS:
             for place, outward in (("medial", -1.0), ("lateral", 1.0)):
-                y = leftward * outward * part.spheres_half_gap * scale
+                y = leftward * outward * part.spheres_half_gap * width
                 body = f"{side}Leg_{part.body}"
-                center = _in_body(skeleton, side, body, (part.spheres_x * scale, y, radius))
+                center = _in_body(skeleton, side, body, (part.spheres_x * length, y, radius))
                 spheres.append(ContactSphere(f"{side}Leg{POINT_SET}{part.name}_{place}", body, center, radius))
     return tuple(spheres)
 
 
 def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
     """Return the hydroelastic set: one box below hindfoot, midfoot and toes of both feet."""
-    scale = skeleton.stature / REFERENCE_STATURE
-    height = SOLE_THICKNESS * scale
     boxes = []
     for side in SIDES:
+        length, width, thickness = skeleton.size(f"{side}Leg_Ankle")
+        height = SOLE_THICKNESS * thickness
         for part in SOLE_PARTS:
-            back, front = part.x[0] * scale, part.x[1] * scale
+            back, front = part.x[0] * length, part.x[1] * length
             body = f"{side}Leg_{part.body}"
             center = _in_body(skeleton, side, body, ((back + front) / 2, 0.0, height / 2))
-            size = (front - back, part.width * scale, height)
+            size = (front - back, part.width * width, height)
             boxes.append(ContactBox(f"{side}Leg{HYDRO_SET}{part.name}", body, center, size))
     return tuple(boxes)
 
@@ -190,8 +190,8 @@ def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[Array, Array]:
     return middle + edge * np.linspace(-0.5, 0.5, n), length
 
 
-def _in_body(skeleton: Skeleton, side: str, body: str, p_SoleP: Vector3) -> Vector3:
+def _in_body(skeleton: Skeleton, side: Side, body: str, p_SoleP: Vector3) -> Vector3:
     """Convert a point relative to the sole below the ankle to the body frame."""
     offset = skeleton.origins[body] - skeleton.origins[f"{side}Leg_Ankle"]
     x, y, z = p_SoleP - offset
-    return (float(x), float(y), float(z - skeleton.sole_height))
+    return (float(x), float(y), float(z - skeleton.ankle_height(side)))

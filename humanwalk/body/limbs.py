@@ -6,7 +6,7 @@ Code outside `humanwalk.body` refers to joints and bodies by these roles.
 from dataclasses import dataclass
 
 from humanwalk.body.anatomy import human
-from humanwalk.body.skeleton import Vector3
+from humanwalk.body.shapes import Vector3
 from humanwalk.sides import SIDES, Side
 
 

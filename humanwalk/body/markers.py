@@ -3,13 +3,14 @@
 The 39 markers of the Plug-in-Gait full-body model have its names (first letter R or L for the side). The medial markers
 of knee, ankle and elbow, those on the heads of the first and fifth metatarsals and on the tip of the shoe are absent
 from Plug-in-Gait; their names follow the same pattern. Positions are on the skin of the reference human
-(`humanwalk.body.visuals`) or at the level of its joint centers, and are proportional to stature.
+(`humanwalk.body.visuals`) or at the level of its joint centers; they scale with the segments.
 """
 
 from dataclasses import dataclass, replace
 
-from humanwalk.body.anatomy import REFERENCE_STATURE, human
-from humanwalk.body.skeleton import Skeleton, Vector3
+from humanwalk.body.anatomy import human
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Skeleton
 
 
 @dataclass(frozen=True)
@@ -35,17 +36,16 @@ class Marker:
         x, y, z = self.position
         return replace(self, name=f"L{self.name[1:]}", body=self.body.replace("Right", "Left"), position=(x, -y, z))
 
-    def scaled(self, factor: float) -> "Marker":
-        """Return the marker on a body with every length multiplied by a factor."""
-        x, y, z = self.position
-        return replace(self, position=(x * factor, y * factor, z * factor))
+    def scaled(self, size: Vector3) -> "Marker":
+        """Return the marker on a segment that is larger along x, y, z by three factors."""
+        (x, y, z), (along_x, along_y, along_z) = self.position, size
+        return replace(self, position=(x * along_x, y * along_y, z * along_z))
 
 
 def markers(skeleton: Skeleton) -> tuple[Marker, ...]:
     """Return every marker of a body, from the head down, right before left."""
-    scale = skeleton.stature / REFERENCE_STATURE
     paired = [side for marker in _right() for side in (marker, marker.mirrored())]
-    return tuple(marker.scaled(scale) for marker in (*paired, *_middle()))
+    return tuple(marker.scaled(skeleton.size(marker.body)) for marker in (*paired, *_middle()))
 
 
 def _middle() -> tuple[Marker, ...]:

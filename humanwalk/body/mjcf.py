@@ -10,7 +10,7 @@ from humanwalk.body.contact import FRICTION, RELAXATION_TIME, contact_spheres
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
 from humanwalk.body.skeleton import Joint, Segment, Skeleton
-from humanwalk.body.visuals import Visual
+from humanwalk.body.visual import Visual
 from humanwalk.quantity import GRAVITY
 from humanwalk.sides import SIDES
 
@@ -61,7 +61,7 @@ def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
                 shape = {"name": sphere.name, "pos": numbers(sphere.center), "size": number(sphere.radius)}
                 ET.SubElement(body, "geom", shape | {"contype": "0", "conaffinity": "1"})
     for side in SIDES:
-        sole = {"name": f"{side}Leg_Sole", "pos": numbers((0, 0, -skeleton.sole_height))}
+        sole = {"name": f"{side}Leg_Sole", "pos": numbers((0, 0, -skeleton.ankle_height(side)))}
         ET.SubElement(bodies[f"{side}Leg_Ankle"], "site", sole)
     actuator = ET.SubElement(mujoco, "actuator")
     for joint in skeleton.joints:

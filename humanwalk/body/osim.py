@@ -13,7 +13,8 @@ from humanwalk.body.markers import markers
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW
 from humanwalk.body.sdf import HEADER, MODEL_NAME
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 

@@ -1,6 +1,5 @@
 """The human inside a Drake MultibodyPlant."""
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -8,35 +7,13 @@ from pydrake.multibody.parsing import PackageMap, Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
 
-from humanwalk.body.anatomy import REFERENCE_MASS, REFERENCE_STATURE, human
-from humanwalk.body.sdf import Look, to_sdf
-from humanwalk.body.skeleton import MASS_RANGE_KG, STATURE_RANGE_M, Skeleton
-from humanwalk.quantity import quantity
+from humanwalk.body.sdf import to_sdf
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 
 PACKAGE = "humanwalk"
 HUMAN_URL = "package://humanwalk/models/sdf/human.sdf"
 """Model file of the reference human, for a parser after `register_package`."""
-
-
-@dataclass(frozen=True)
-class Subject:
-    """The body that walks: the reference human, scaled."""
-
-    mass: float = quantity(REFERENCE_MASS, "kg", *MASS_RANGE_KG)
-    """Body mass (thesis 3.3.1: 70 kg)."""
-
-    stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
-    """Standing height (thesis 3.3.1: 1.75 m)."""
-
-    look: Look = "person"
-    """Look of the body: a clothed person, or rods between joints with their axes and the contact spheres."""
-
-    @property
-    def skeleton(self) -> Skeleton:
-        """The scaled skeleton."""
-        if (self.mass, self.stature) == (REFERENCE_MASS, REFERENCE_STATURE):
-            return human()
-        return human().scaled(self.mass, self.stature)
 
 
 def register_package(package_map: PackageMap) -> None:
@@ -45,7 +22,7 @@ def register_package(package_map: PackageMap) -> None:
 
 
 def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
-    """Parse the subject's model, strictly, into a plant that is not finalized, and return its instance."""
+    """Parse the subject's model with all loads, strictly, into a plant that is not finalized; returns its instance."""
     parser = Parser(plant)
     parser.SetStrictParsing()
     register_package(parser.package_map())
@@ -56,10 +33,20 @@ def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
     return instance
 
 
-@cache
 def kinematics_plant(subject: Subject) -> MultibodyPlant:
-    """Return a finalized plant of the subject alone, without geometry, for kinematics and inertia."""
+    """Return a finalized plant of the subject alone, without geometry, for kinematics and inertia.
+
+    It is the walker's model of its body: it has the loads that are known. Its states are those of every plant of the
+    subject.
+    """
+    return _plant_of(subject.known_skeleton)
+
+
+@cache
+def _plant_of(skeleton: Skeleton) -> MultibodyPlant:
     plant = MultibodyPlant(time_step=0.0)
-    add_human(plant, subject)
+    parser = Parser(plant)
+    parser.SetStrictParsing()
+    parser.AddModelsFromString(to_sdf(skeleton), "sdf")
     plant.Finalize()
     return plant

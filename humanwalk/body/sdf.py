@@ -21,8 +21,10 @@ from humanwalk.body.contact import (
     contact_spheres,
 )
 from humanwalk.body.model_text import number, numbers
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
-from humanwalk.body.visuals import Visual, visuals
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
+from humanwalk.body.visual import Visual
+from humanwalk.body.visuals import visuals
 from humanwalk.sides import SIDES
 
 MODEL_NAME = "human"
@@ -72,7 +74,7 @@ def to_sdf(skeleton: Skeleton, look: Look = "person") -> str:
             model.append(_fixed(inboard))
     for side in SIDES:
         frame = ET.SubElement(model, "frame", {"name": f"{side}Leg_Sole", "attached_to": f"{side}Leg_Ankle"})
-        _add_pose(frame, (0, 0, -skeleton.sole_height))
+        _add_pose(frame, (0, 0, -skeleton.ankle_height(side)))
     ET.indent(sdf)
     return '<?xml version="1.0"?>\n' + ET.tostring(sdf, encoding="unicode") + "\n"
 

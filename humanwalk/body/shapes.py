@@ -1,6 +1,6 @@
-"""Solids that represent the mass of a body segment: a box and a circular cylinder.
+"""How mass is distributed in a body segment: a box, a circular cylinder, or measured radii of gyration.
 
-They define inertia, not appearance: their densities are 0.2 to 1.6 g/cm3 (erratum E7).
+They define inertia, not appearance: the densities of the thesis' solids are 0.2 to 1.6 g/cm3 (erratum E7).
 """
 
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ import numpy as np
 from humanwalk.numerics import Array
 
 Axis = Literal["x", "y", "z"]
+Vector3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -79,4 +80,32 @@ class Cylinder:
         return Cylinder(self.radius * factor, self.length * factor, self.axis)
 
 
-Shape = Box | Cylinder
+@dataclass(frozen=True)
+class Measured:
+    """Mass whose principal radii of gyration were measured, parallel to the body frame.
+
+    Attributes:
+        size: Edges of the bounding box along x, y, z [m].
+        gyration: Radii of gyration about x, y, z through the center of mass [m].
+    """
+
+    size: Vector3
+    gyration: Vector3
+
+    @property
+    def extent(self) -> Array:
+        """Edges of the bounding box along x, y, z [m], shape (3,)."""
+        return np.array(self.size)
+
+    def inertia(self, mass: float) -> Array:
+        """Return the principal moments about the center of mass, m k2 [kg m2], shape (3,), for a mass [kg]."""
+        return mass * np.square(self.gyration)
+
+    def scaled(self, factor: float) -> "Measured":
+        """Return the distribution with every length multiplied by a factor."""
+        x, y, z = self.size
+        kx, ky, kz = self.gyration
+        return Measured((x * factor, y * factor, z * factor), (kx * factor, ky * factor, kz * factor))
+
+
+Shape = Box | Cylinder | Measured

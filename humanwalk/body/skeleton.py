@@ -13,14 +13,21 @@ from functools import cached_property
 
 import numpy as np
 
-from humanwalk.body.shapes import Shape
+from humanwalk.body.shapes import Shape, Vector3
+from humanwalk.body.visual import Visual
 from humanwalk.numerics import Array
 from humanwalk.quantity import require_in_range
+from humanwalk.sides import SIDES, Side
 
-Vector3 = tuple[float, float, float]
+REFERENCE_MASS = 70.0
+"""Body mass of the reference human [kg] (thesis 3.3.1)."""
+REFERENCE_STATURE = 1.75
+"""Stature of the reference human [m] (thesis 3.3.1)."""
 
-MASS_RANGE_KG = (30.0, 200.0)
-STATURE_RANGE_M = (1.2, 2.2)
+MASS_RANGE_KG = (12.0, 200.0)
+"""From a slight child of six years to what scales and shoes are made for (our choice)."""
+STATURE_RANGE_M = (1.0, 2.2)
+"""From a short child of six years to the tallest adults but for gigantism (our choice)."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +36,13 @@ class Segment:
 
     Attributes:
         name: The thesis' name of the body, e.g. `RightLeg_Tibia`.
-        shape: Uniform solid with the inertia, centered on the center of mass.
+        shape: Distribution of the mass about its center.
         mass: Mass [kg].
         com: Center of mass in the body frame, p_BoBcm_B [m].
         source: Source of shape and mass.
+        proportions: Size along x, y, z of what surrounds the joints (skin, soles, markers), relative to the same
+            segment of the reference human of equal stature.
+        drawn: What is drawn in every look, for a segment that is no part of the body.
     """
 
     name: str
@@ -40,6 +50,8 @@ class Segment:
     mass: float
     com: Vector3
     source: str
+    proportions: Vector3 = (1.0, 1.0, 1.0)
+    drawn: tuple[Visual, ...] = ()
 
     @property
     def inertia(self) -> Array:
@@ -152,12 +164,16 @@ class Skeleton:
         joints: The revolute joints, in the order of their child segments.
         welds: The rigid connections.
         root_height: Height of the root frame in neutral standing [m].
+        raised: Height of the soles above the ground in neutral standing, right and left [m]: 0 but for a shorter leg.
+        long_hair: Whether the look `person` has long hair.
     """
 
     segments: tuple[Segment, ...]
     joints: tuple[Joint, ...]
     welds: tuple[Weld, ...]
     root_height: float
+    raised: tuple[float, float] = (0.0, 0.0)
+    long_hair: bool = False
 
     def __post_init__(self) -> None:
         """Check that the segments form a tree.
@@ -239,13 +255,16 @@ class Skeleton:
 
     @property
     def leg_length(self) -> float:
-        """Distance from hip to ankle joint along the straight leg [m]."""
-        return self.hip_height - self.sole_height
+        """Distance from hip to ankle joint along the straight leg, the shorter one if they differ [m]."""
+        return min(self.hip_height - float(self.origins[f"{side}Leg_Ankle"][2]) for side in SIDES)
 
-    @property
-    def sole_height(self) -> float:
-        """Height of the ankle joints above the sole [m]."""
-        return float(self.origins["RightLeg_Ankle"][2])
+    def ankle_height(self, side: Side) -> float:
+        """Height of an ankle joint above the sole [m]."""
+        return float(self.origins[f"{side}Leg_Ankle"][2]) - self.raised[SIDES.index(side)]
+
+    def size(self, segment_name: str) -> Vector3:
+        """Size along x, y, z of what surrounds a segment, relative to the reference human of 1.75 m."""
+        return _times(self.segment(segment_name).proportions, self.stature / REFERENCE_STATURE)
 
     @property
     def hip_half_width(self) -> float:
@@ -264,11 +283,14 @@ class Skeleton:
         require_in_range("mass", mass, "kg", *MASS_RANGE_KG)
         require_in_range("stature", stature, "m", *STATURE_RANGE_M)
         length_factor, mass_factor = stature / self.stature, mass / self.total_mass
-        return Skeleton(
+        right, left = self.raised
+        return replace(
+            self,
             segments=tuple(s.scaled(length_factor, mass_factor) for s in self.segments),
             joints=tuple(j.scaled(length_factor, mass_factor) for j in self.joints),
             welds=tuple(w.scaled(length_factor) for w in self.welds),
             root_height=self.root_height * length_factor,
+            raised=(right * length_factor, left * length_factor),
         )
 
 

@@ -19,8 +19,9 @@ from humanwalk.body.contact import (
 )
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
-from humanwalk.body.skeleton import Joint, Segment, Skeleton, Vector3, Weld
-from humanwalk.body.visuals import Visual
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
+from humanwalk.body.visual import Visual
 from humanwalk.sides import SIDES
 
 DRAKE_NAMESPACE = "http://drake.mit.edu"
@@ -72,7 +73,7 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
     for side in SIDES:
         sole, ankle = f"{side}Leg_Sole", f"{side}Leg_Ankle"
         ET.SubElement(robot, "link", {"name": sole})
-        robot.append(_joint(f"{sole}_Weld", "fixed", ankle, sole, (0.0, 0.0, -skeleton.sole_height)))
+        robot.append(_joint(f"{sole}_Weld", "fixed", ankle, sole, (0.0, 0.0, -skeleton.ankle_height(side))))
     ET.indent(robot)
     return '<?xml version="1.0"?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 

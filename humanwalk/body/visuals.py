@@ -1,21 +1,17 @@
 """The look `person`: a clothed person made of rounded primitives in the body frames.
 
-The primitives fit the reference human and are scaled with stature; they have neither mass nor contact. Limbs are
+The primitives fit the reference human and take the size of each segment; they have neither mass nor contact. Limbs are
 defined for the right side and mirrored. Balls at knees and elbows close the gaps of bent limbs. Left is orange and
 right is blue (shoes, sleeve cuffs, trouser stripes).
 """
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Literal
 
-from humanwalk.body.anatomy import REFERENCE_STATURE, human
-from humanwalk.body.skeleton import Skeleton, Vector3
-from humanwalk.sides import Side
-
-Color = tuple[float, float, float]
-Primitive = Literal["ellipsoid", "capsule", "cylinder", "box"]
+from humanwalk.body.anatomy import human
+from humanwalk.body.shapes import Vector3
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.visual import SIDE_COLORS, Color, Visual, ball, capsule, ellipsoid
 
 SKIN: Color = (0.87, 0.68, 0.56)
 LIPS: Color = (0.73, 0.45, 0.40)
@@ -26,82 +22,14 @@ SHIRT: Color = (0.70, 0.76, 0.79)
 TROUSERS: Color = (0.24, 0.30, 0.41)
 BELT: Color = (0.10, 0.08, 0.07)
 SOLE: Color = (0.30, 0.31, 0.33)
-SIDE_COLORS: dict[Side, Color] = {"Right": (0.10, 0.42, 0.70), "Left": (0.87, 0.40, 0.10)}
-"""Color of shoes, cuffs and stripes; blue and orange are distinct in color blindness."""
-
-
-@dataclass(frozen=True)
-class Visual:
-    """One visible primitive.
-
-    Attributes:
-        body: Name of the segment.
-        part: Part of the look, unique on its body.
-        primitive: SDFormat name of the shape.
-        size: Ellipsoid: three radii; box: three edges; capsule and cylinder: radius, length
-            along z (a capsule's without its caps) [m].
-        center: Center in the body frame [m].
-        rpy: Roll, pitch, yaw in the body frame [rad].
-        color: Red, green, blue, 0 to 1.
-    """
-
-    body: str
-    part: str
-    primitive: Primitive
-    size: tuple[float, ...]
-    center: Vector3
-    rpy: Vector3
-    color: Color
-
-    @property
-    def name(self) -> str:
-        """Name in the model file, unique in the model."""
-        return f"{self.body}_{self.part}"
-
-    def mirrored(self) -> "Visual":
-        """Return the left counterpart of a right part, in the color of its side."""
-        x, y, z = self.center
-        roll, pitch, yaw = self.rpy
-        return replace(
-            self,
-            body=self.body.replace("Right", "Left"),
-            part=self.part.replace("right", "left"),
-            center=(x, -y, z),
-            rpy=(-roll, pitch, -yaw),
-            color=SIDE_COLORS["Left"] if self.color == SIDE_COLORS["Right"] else self.color,
-        )
-
-    def scaled(self, factor: float) -> "Visual":
-        """Return the part with every length multiplied by a factor."""
-        x, y, z = self.center
-        return replace(self, size=tuple(s * factor for s in self.size), center=(x * factor, y * factor, z * factor))
 
 
 def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
-    """Return all primitives of a body, in body frames, scaled to its stature."""
-    scale = skeleton.stature / REFERENCE_STATURE
+    """Return all primitives of a body, in body frames, each with the size of its segment."""
     paired = [*_right_trunk_half(), *_right_face_half(), *_right_leg(), *_right_arm()]
-    return tuple(v.scaled(scale) for v in (*_trunk(), *_head(), *paired, *(v.mirrored() for v in paired)))
-
-
-def ellipsoid(body: str, part: str, center: Vector3, radii: Vector3, color: Color, rpy: Vector3 = (0, 0, 0)) -> Visual:
-    """Return an ellipsoid by its center and radii."""
-    return Visual(body, part, "ellipsoid", radii, center, rpy, color)
-
-
-def ball(body: str, part: str, center: Vector3, radius: float, color: Color) -> Visual:
-    """Return a sphere by its center and radius."""
-    return ellipsoid(body, part, center, (radius, radius, radius), color)
-
-
-def capsule(body: str, part: str, start: Vector3, end: Vector3, radius: float, color: Color) -> Visual:
-    """Return a rounded rod by the centers of its two caps."""
-    dx, dy, dz = (a - b for a, b in zip(start, end, strict=True))
-    length = math.hypot(dx, dy, dz)
-    # Pitch and yaw that rotate the z axis to the rod.
-    rpy = (0.0, math.atan2(math.hypot(dx, dy), dz), math.atan2(dy, dx))
-    center = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2, (start[2] + end[2]) / 2)
-    return Visual(body, part, "capsule", (radius, length), center, rpy, color)
+    middle = [*_trunk(), *_head(), *(_long_hair() if skeleton.long_hair else ())]
+    parts = (*middle, *paired, *(v.mirrored() for v in paired))
+    return (*(v.scaled(skeleton.size(v.body)) for v in parts), *(v for s in skeleton.segments for v in s.drawn))
 
 
 def _trunk() -> Iterator[Visual]:
@@ -141,6 +69,12 @@ def _head() -> Iterator[Visual]:
     yield ellipsoid("Head", "hair", (-0.012, 0, 0.060), (0.094, 0.081, 0.083), HAIR)
     yield ellipsoid("Head", "hair_top", (0.012, 0, 0.085), (0.085, 0.075, 0.060), HAIR)
     yield ellipsoid("Head", "hair_back", (-0.032, 0, 0.022), (0.066, 0.073, 0.075), HAIR)
+
+
+def _long_hair() -> Iterator[Visual]:
+    """A pony tail."""
+    yield ball("Head", "hair_knot", (-0.104, 0, 0.075), 0.032, HAIR)
+    yield ellipsoid("Head", "hair_tail", (-0.122, 0, -0.005), (0.028, 0.032, 0.090), HAIR, (0, 0.12, 0))
 
 
 def _right_face_half() -> Iterator[Visual]:

@@ -11,7 +11,7 @@ from pydrake.systems.framework import OutputPort
 from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.world import World

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Protocol
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.world import World
 from humanwalk.numerics import Array

@@ -8,7 +8,8 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support

@@ -10,7 +10,8 @@ from pydrake.math import RigidTransform
 from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import PELVIS
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, did_you_mean, quantity, require_in_range
 from humanwalk.terrain import Terrain

@@ -3,7 +3,7 @@
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import base_first_mass_matrix
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.choices.world import World
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.numerics.stability import round_down
@@ -20,7 +20,7 @@ def add_support(world: World, parameters: BalanceSupportParameters, pelvis_refer
     if not parameters.enabled:
         return
     plant, subject, reference = world.plant, world.subject, Subject()
-    scaled = parameters.scaled(subject.mass / reference.mass, subject.stature / reference.stature)
+    scaled = parameters.scaled(subject.known_mass / reference.mass, subject.stature / reference.stature)
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
     stable = largest_support_step(M, world.kp, world.step_impedance, scaled)
     if plant.time_step() > stable:

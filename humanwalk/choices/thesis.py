@@ -7,7 +7,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
@@ -107,7 +107,7 @@ class ThesisController:
         gait, arms, solver = self._add_source(world)
         targets, posture = gait.GetOutputPort("sole_targets"), arms.GetOutputPort("posture")
         if self.balance.foot_force.enabled:
-            weight = world.subject.mass * GRAVITY
+            weight = world.subject.known_mass * GRAVITY
             level_1 = world.add(
                 "foot_force_balance",
                 FootForceBalance(weight, self.balance.foot_force, self.control_period),

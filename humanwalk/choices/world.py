@@ -8,7 +8,8 @@ from pydrake.multibody.tree import ModelInstanceIndex
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import StartParameters
 from humanwalk.control.pd_control import StepImpedance

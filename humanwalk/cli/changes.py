@@ -52,6 +52,21 @@ class Changes:
     ] = dataclasses.field(default_factory=list)
     mass: Annotated[float | None, _option(help="Body mass [kg].")] = None
     stature: Annotated[float | None, _option(help="Standing height [m].")] = None
+    sex: Annotated[
+        str | None, _option(help="female or male: proportions after de Leva (1996); unspecified: the thesis' body.")
+    ] = None
+    age: Annotated[
+        float | None, _option(help="Age [years], from 6; below 18 proportions of children. Needs a sex.")
+    ] = None
+    load: Annotated[
+        list[str],
+        _option(
+            metavar="LOAD",
+            help='Carry, instead of the scenario\'s loads, like "backpack 10 kg"; can be given several times. '
+            "Grammar: LOAD MASS kg [in the right hand | in the left hand] [unknown]; LOAD is backpack, vest, ankle "
+            "weights (mass of each) or suitcase; unknown: the walker's model of its body lacks it.",
+        ),
+    ] = dataclasses.field(default_factory=list)
     terrain: Annotated[
         str | None,
         _option(
@@ -71,12 +86,15 @@ class Changes:
         Raises:
             ParameterError: a text that cannot be read, or a scenario whose speed cannot be set.
         """
-        from humanwalk.cli.shorthands import push_overrides, terrain_overrides
+        from humanwalk.cli.shorthands import load_overrides, push_overrides, terrain_overrides
 
         overrides = {**(base or {}), **overrides_of(self.set_)}
-        for name in ("mass", "stature"):
+        for name in ("mass", "stature", "sex", "age"):
             if getattr(self, name) is not None:
-                overrides[f"subject.{name}"] = repr(getattr(self, name))
+                # JSON is YAML, and quotes any character.
+                overrides[f"subject.{name}"] = json.dumps(getattr(self, name))
+        if self.load:
+            overrides |= load_overrides(self.load)
         if self.terrain is not None:
             overrides |= terrain_overrides(self.terrain)
         if self.push:
@@ -90,9 +108,14 @@ class Changes:
     @property
     def shorthands(self) -> list[str]:
         """The shorthands that are given, for people."""
-        numbers = {"speed": (self.speed, "m/s"), "mass": (self.mass, "kg"), "stature": (self.stature, "m")}
+        numbers = {
+            "speed": (self.speed, "m/s"),
+            "mass": (self.mass, "kg"),
+            "stature": (self.stature, "m"),
+            "age": (self.age, "years"),
+        }
         texts = [f"{name} {value:g} {unit}" for name, (value, unit) in numbers.items() if value is not None]
-        texts += [self.terrain] if self.terrain is not None else []
+        texts += [text for text in (self.sex, self.terrain) if text is not None] + self.load
         return texts + [f"push {push}" for push in self.push]
 
 

@@ -17,7 +17,7 @@ from humanwalk.cli.common import (
     require_look,
     stdout,
 )
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, tag_of
 
 if TYPE_CHECKING:
     from humanwalk.bench.result import BenchResult
@@ -25,26 +25,43 @@ if TYPE_CHECKING:
 
 @app.command(
     rich_help_panel=INSPECT,
-    epilog="Examples: humanwalk model --mass 55 --stature 1.60 -o small.sdf  |  humanwalk model -o human.xml",
+    epilog="Examples: humanwalk model --mass 55 --stature 1.60 -o small.sdf  |  humanwalk model --sex female --age 8 "
+    '--mass 26 --stature 1.28 --load "backpack 3 kg"  |  humanwalk model -o human.xml',
 )
+@takes_changes
 def model(
+    changes: Changes,
+    scenario: ScenarioArgument = "thesis",
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="File to write; .sdf, .urdf, .xml (MJCF) or .osim by its suffix.")
-    ],
-    mass: Annotated[float, typer.Option(help="Body mass [kg].")] = 70.0,
-    stature: Annotated[float, typer.Option(help="Standing height [m].")] = 1.75,
+        Path | None,
+        typer.Option("--output", "-o", help="File to write; .sdf, .urdf, .xml (MJCF) or .osim by its suffix."),
+    ] = None,
     look: LookOption = "person",
 ) -> None:
-    """Write the human as a model: SDF or URDF for Drake, MJCF for MuJoCo, OSIM for OpenSim."""
+    """Print the segments of a scenario's subject beside the tables, and write its model.
+
+    SDF or URDF for Drake, MJCF for MuJoCo, OSIM for OpenSim.
+    """
+    from humanwalk.body.loads import LOADS
     from humanwalk.body.model_file import write_model
-    from humanwalk.body.plant import Subject
-    from humanwalk.quantity import check
+    from humanwalk.cli.segment_table import segment_table
+    from humanwalk.scenario import load_scenario
 
     require_look(look)
-    subject = Subject(mass=mass, stature=stature)
-    check(subject, "subject")
-    write_model(output, subject.skeleton, look)  # type: ignore[arg-type]
-    console.print(f"{output}: 44 bodies, 42 revolute joints, {mass:g} kg, {stature:g} m", soft_wrap=True)
+    subject = load_scenario(scenario, changes.overrides(scenario)).subject
+    skeleton = subject.skeleton
+    if output is not None:
+        write_model(output, skeleton, look)  # type: ignore[arg-type]
+    stdout.print(segment_table(subject))
+    for load in subject.loads:
+        known = "known" if load.known else "unknown"
+        console.print(f"{tag_of(LOADS, load)}: {load.total:g} kg, {known} to the walker", soft_wrap=True)
+    if output is not None:
+        console.print(
+            f"{output}: {len(skeleton.segments)} bodies, {len(skeleton.joints)} revolute joints, "
+            f"{skeleton.total_mass:g} kg, {subject.stature:g} m",
+            soft_wrap=True,
+        )
 
 
 @app.command(rich_help_panel=INSPECT, epilog="Example: humanwalk diagram thesis -o diagram.svg")

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from humanwalk.body.loads import LOADS
 from humanwalk.quantity import ParameterError, did_you_mean, printable
 from humanwalk.terrain import TERRAINS
 from humanwalk.walking.push import Push
@@ -16,6 +17,9 @@ PUSH_EXAMPLE = "60 N s at 8 s from behind"
 SIDES_GRAMMAR = "SIDE is front, behind, left, right, or an angle like 45 deg: 0 is the front, 90 the left"
 TERRAIN_GRAMMAR = "[TERRAIN] [FIELD VALUE [UNIT]], ..."
 TERRAIN_EXAMPLE = "plane slope 3 deg, friction coefficient 0.5"
+
+LOAD_GRAMMAR = "LOAD MASS kg [in the right hand | in the left hand] [unknown]"
+LOAD_EXAMPLE = "backpack 10 kg"
 
 BEARINGS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
 """Where a push comes from, for a walker that faces x: angle from x to the left [deg]."""
@@ -28,6 +32,11 @@ PUSH = re.compile(
     rf"\s+ from \s+ (?:the \s+)? (?:(?P<side>{'|'.join(BEARINGS)}) | (?P<angle>{NUMBER}) \s* deg)"
     rf"(?: \s+ for \s+ (?P<duration>{NUMBER}) \s* s)?"
     rf"(?: \s+ on \s+ (?:the \s+)? (?P<body>\w+))?",
+    re.VERBOSE,
+)
+LOAD = re.compile(
+    rf"(?P<kind>[A-Za-z_][A-Za-z_ ]*?) \s+ (?P<mass>{NUMBER}) \s* kg"
+    rf"(?: \s+ in \s+ the \s+ (?P<side>right|left) \s+ hand)? (?: \s+ (?P<unknown>unknown))?",
     re.VERBOSE,
 )
 FIELD = re.compile(rf"(?P<name>[A-Za-z_][A-Za-z_ ]*?)\s+(?:(?P<number>{NUMBER})\s*(?P<unit>\S*)|(?P<word>\S+))")
@@ -66,6 +75,29 @@ def push_of(text: str) -> Push:
     direction = math.remainder(math.radians(bearing + 180.0), 2.0 * math.pi)
     numbers = {name: float(found[name]) for name in ("impulse", "time", "duration") if found[name]}
     return Push(direction=direction, body=found["body"] or Push.body, **numbers)
+
+
+def load_overrides(texts: Sequence[str]) -> dict[str, str]:
+    """The loads of a subject, like "backpack 10 kg" or "suitcase 8 kg in the left hand".
+
+    Raises:
+        ParameterError: a text is no load.
+    """
+    return {"subject.loads": json.dumps([_load(text) for text in texts])}
+
+
+def _load(text: str) -> dict[str, dict[str, Any]]:
+    found = LOAD.fullmatch(text.strip())
+    tag = "_".join(found["kind"].split()) if found else text.strip().partition(" ")[0]
+    if found is None or tag not in LOADS:
+        raise ParameterError(
+            f"--load {printable(text)}: not a load; allowed: {LOAD_GRAMMAR} with LOAD one of {', '.join(LOADS)}; write "
+            f'it like "{LOAD_EXAMPLE}"{did_you_mean(tag, tuple(LOADS))}'
+        )
+    fields: dict[str, Any] = {"mass": float(found["mass"]), "known": found["unknown"] is None}
+    if found["side"]:
+        fields["side"] = found["side"].capitalize()
+    return {tag: fields}
 
 
 def terrain_overrides(text: str) -> dict[str, str]:

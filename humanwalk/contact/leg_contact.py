@@ -16,7 +16,6 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 
 from humanwalk.body import SIDES, Side, Skeleton
-from humanwalk.body.anatomy import REFERENCE_STATURE
 from humanwalk.body.limbs import LEGS
 from humanwalk.numerics import Array
 
@@ -53,10 +52,11 @@ def add_leg_capsules(plant: MultibodyPlant, skeleton: Skeleton) -> None:
 
 def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Array, float]]:
     """Body, ends including the caps in the body frame [m], shape (3,) each, and radius [m] of a leg's capsules."""
-    leg, origins, scale = LEGS[side], skeleton.origins, skeleton.stature / REFERENCE_STATURE
-    yield leg.thigh, np.zeros(3), origins[leg.shank] - origins[leg.thigh], THIGH_RADIUS * scale
-    yield leg.shank, np.zeros(3), origins[leg.hindfoot] - origins[leg.shank], SHANK_RADIUS * scale
-    yield leg.hindfoot, HEEL * scale, BALL * scale, FOOT_RADIUS * scale
+    leg, origins = LEGS[side], skeleton.origins
+    thigh, shank, foot = (np.array(skeleton.size(body)) for body in (leg.thigh, leg.shank, leg.hindfoot))
+    yield leg.thigh, np.zeros(3), origins[leg.shank] - origins[leg.thigh], THIGH_RADIUS * thigh[0]
+    yield leg.shank, np.zeros(3), origins[leg.hindfoot] - origins[leg.shank], SHANK_RADIUS * shank[0]
+    yield leg.hindfoot, HEEL * foot, BALL * foot, FOOT_RADIUS * foot[1]
 
 
 def filter_leg_capsules(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:

@@ -5,7 +5,8 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.limbs import LEGS, PELVIS
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.control.inverse_kinematics import (
     InverseKinematicsParameters,
     LegKinematics,

@@ -21,7 +21,8 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.body.visuals import visuals
 from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.numerics import Array

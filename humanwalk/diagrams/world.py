@@ -79,7 +79,7 @@ def add_world(
         step_impedance=partial(scenario.actuation.step_impedance, kp=kp, kd=kd),
         sources=sources,
     )
-    world.add("body_observer", BodyObserver(plant), state=world.state)
+    world.add("body_observer", BodyObserver(model), state=world.state)
     contact.add_to(world)
     return world
 

@@ -12,7 +12,8 @@ from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS, PELVIS
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.motion.motion_table import MotionTable, brief, first_names, read_motion_table
 from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion, pelvis_rotation
 from humanwalk.numerics import Array

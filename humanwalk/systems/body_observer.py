@@ -18,13 +18,17 @@ class BodyObserver(LeafSystem):
 
     Outputs:
         soles: (6) position of the right, then the left sole frame in W [m].
-        com: (6) position [m], then velocity [m/s] of the center of mass in W.
+        com: (6) position [m], then velocity [m/s] of the center of mass in W, of the bodies in the plant.
         ankles: (30) of the right, then the left ankle in W: position [m], velocity [m/s], x and z axis of the hindfoot
             and its angular velocity [rad/s].
     """
 
     def __init__(self, plant: MultibodyPlant) -> None:
-        """Make the observer of a finalized plant."""
+        """Make the observer.
+
+        Args:
+            plant: finalized; in a walker its model of its own body, which may lack a load.
+        """
         super().__init__()
         self._plant = plant
         self._plant_context = plant.CreateDefaultContext()

@@ -6,9 +6,10 @@ import binascii
 import numpy as np
 import pyarrow as pa
 
-from humanwalk.body import REFERENCE_STATURE, SIDES
+from humanwalk.body import SIDES
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.body.plant import Subject
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.subject import Subject
 from humanwalk.measures.curves import ANGLES, JOINTS
 from humanwalk.measures.events import CONTACT_ON_N
 from humanwalk.measures.orientation import sole_rotation
@@ -74,11 +75,12 @@ def require_samples(text: str) -> None:
 
 def _centers_of_pressure(signals: pa.Table, subject: Subject) -> Array:
     """Centers of pressure in the frames of the soles [foot lengths], shape (rows, 2 feet, 2)."""
-    scale = subject.stature / REFERENCE_STATURE
+    skeleton = subject.skeleton
+    length = np.array([skeleton.size(LEGS[side].hindfoot)[0] for side in SIDES])[:, None]
     cop = np.empty((signals.num_rows, len(SIDES), 2))
     for place, side in enumerate(SIDES):
         points, sole = (
             matrix(signals, [f"{side.lower()}_{name}{axis}_m" for axis in "xyz"]) for name in ("foot.cop_", "sole.")
         )
         cop[:, place] = sole_rotation(signals, side).inv().apply(points - sole)[:, :2]
-    return np.asarray((cop - np.array((HEEL * scale, 0.0))) / ((TOE - HEEL) * scale))
+    return np.asarray((cop / length - np.array((HEEL, 0.0))) / (TOE - HEEL))

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from humanwalk.body.skeleton import Vector3
+from humanwalk.body.shapes import Vector3
 
 
 @dataclass(frozen=True)

@@ -110,7 +110,7 @@ def test_totals_and_heights(body: Skeleton) -> None:
     assert body.total_mass == pytest.approx(70.0, abs=1e-9)
     assert body.stature == pytest.approx(1.75, abs=1e-9)
     assert body.hip_height == pytest.approx(0.931967, abs=1e-12)
-    assert body.sole_height == pytest.approx(0.068, abs=1e-12)
+    assert body.ankle_height("Right") == pytest.approx(0.068, abs=1e-12)
     assert body.leg_length == pytest.approx(0.4242 + 0.439767, abs=1e-12)
     assert body.hip_half_width == pytest.approx(0.0875, abs=1e-12)
 

@@ -11,9 +11,10 @@ from humanwalk.body import human, to_sdf
 from humanwalk.body.anatomy import REFERENCE_STATURE
 from humanwalk.body.bones import CONTACT, bones
 from humanwalk.body.contact import contact_spheres
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.skeleton import Skeleton
-from humanwalk.body.visuals import Visual
+from humanwalk.body.subject import Subject
+from humanwalk.body.visual import Visual
 from humanwalk.numerics import Array
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from humanwalk.body import human
 from humanwalk.body.markers import markers
-from humanwalk.body.plant import Subject
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 from humanwalk.body.visuals import visuals
 from humanwalk.numerics import Array
 

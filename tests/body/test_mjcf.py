@@ -10,9 +10,10 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from humanwalk.body.contact import contact_spheres
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.mjcf import to_mjcf
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.sdf import LOOKS
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 from humanwalk.exchange.mujoco_map import MujocoMap
 
 SUBJECTS = [Subject(), Subject(mass=55.0, stature=1.6)]

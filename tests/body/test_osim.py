@@ -12,7 +12,8 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.markers import markers
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW
 from humanwalk.body.osim import to_osim
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 
 SUBJECT = Subject(mass=60.0, stature=1.6)
 

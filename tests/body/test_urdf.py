@@ -8,8 +8,9 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
 from humanwalk.body.sdf import LOOKS, Look
+from humanwalk.body.subject import Subject
 from humanwalk.body.urdf import to_urdf
 
 SUBJECTS = [Subject(), Subject(mass=50.0, stature=1.5)]

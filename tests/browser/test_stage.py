@@ -8,7 +8,8 @@ from PIL import Image
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.systems.signal import state_columns
 from humanwalk.view.browser import open_stage

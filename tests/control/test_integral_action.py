@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.multibody.plant import MultibodyPlant
 
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.control.integral_action import integral_update, integrated, require_stable_integral
 from humanwalk.control.joint_gains import JointGains, joint_gains
 from humanwalk.control.pd_control import PD_LAWS, PdLaw

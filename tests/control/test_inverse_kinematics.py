@@ -197,7 +197,7 @@ def test_a_target_ten_centimeters_out_of_reach_gives_the_nearest_pose(
 
     # No posture brings the sole further from the hip than leg and foot in one line.
     p_PHip = np.array([0.0, -skeleton.hip_half_width if side == "Right" else skeleton.hip_half_width, 0.0])
-    reach = skeleton.leg_length + skeleton.sole_height
+    reach = skeleton.leg_length + skeleton.ankle_height("Right")
     nearest = np.linalg.norm(target.translation() - p_PHip) - reach
     # And the straight leg with a level sole is 10 cm off: the nearest pose in weighted terms is no worse.
     turned, moved = distances(leg, solution.theta, target)

@@ -5,7 +5,8 @@ import pytest
 from pydrake.systems.analysis import Simulator
 
 from humanwalk.body.limbs import PELVIS
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.diagrams.ragdoll import make_ragdoll
 from humanwalk.run.fall_picture import TIME_TO_LIE
 from humanwalk.terrain import Plane

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.motion.followed import REQUIRED_JOINTS, followed_motion
 from humanwalk.motion.motion_table import MAX_BYTES, MotionTable, storage_text
 from humanwalk.motion.recorded_motion import MotionMapping

@@ -10,7 +10,8 @@ from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import SPINE_PITCH_JOINTS
 from humanwalk.body.opensim_names import COORDINATES
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.motion.followed import REQUIRED_JOINTS, followed_motion
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion

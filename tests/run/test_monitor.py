@@ -14,7 +14,8 @@ from pydrake.systems.framework import Context, EventStatus
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.limbs import PELVIS
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.monitor import CHECK_PERIOD, FALL_HEIGHT_SHARE, STOP_SIGNALS, Monitor
 from humanwalk.terrain import Plane

@@ -11,7 +11,8 @@ from pydrake.systems.framework import Context
 from rich.console import Console
 
 from humanwalk.body.contact import FRICTION, SOLE_PARTS
-from humanwalk.body.plant import Subject, kinematics_plant
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
 from humanwalk.choices.start import start_velocities
 from humanwalk.cli.walk import summary_table
 from humanwalk.gait.foot_cycle import FootPathParameters

@@ -12,7 +12,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body.limbs import PELVIS
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.following_view import LATERAL_SLACK, SCENE, FollowingView

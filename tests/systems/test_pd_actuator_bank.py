@@ -13,7 +13,8 @@ from pydrake.systems.framework import Context, DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.control.hermite import hermite
 from humanwalk.control.joint_gains import JointGains, joint_gains
 from humanwalk.control.pd_control import PdLaw, install_gains, pd_torque

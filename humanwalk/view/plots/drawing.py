@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from humanwalk.body import Side
-from humanwalk.body.visuals import SIDE_COLORS
+from humanwalk.body.visual import SIDE_COLORS
 from humanwalk.files import write_whole
 from humanwalk.numerics import Array, Mask
 

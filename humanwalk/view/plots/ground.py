@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from humanwalk.body import REFERENCE_STATURE, SIDES, Side
+from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.body.limbs import LEGS
 from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
@@ -137,11 +138,11 @@ def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
     contact = events_of(run.signals, side).contact & rows
     edges = np.flatnonzero(np.diff(contact.astype(int), prepend=0, append=0))
     x, y = (run[f"{side.lower()}_sole.{axis}"] for axis in "xy")
-    scale = run.scenario.subject.stature / REFERENCE_STATURE
+    length, breadth, _ = run.scenario.subject.skeleton.size(LEGS[side].hindfoot)
     for begin, end in edges.reshape(-1, 2):
         middle = (begin + end) // 2
         for part in SOLE_PARTS:
-            back, front, width = scale * part.x[0], scale * part.x[1], scale * part.width
+            back, front, width = length * part.x[0], length * part.x[1], breadth * part.width
             corner = (x[middle] + back, y[middle] - width / 2)
             sole = Rectangle(corner, front - back, width, facecolor=(*SIDE[side], 0.13), edgecolor="none")
             axes.add_patch(sole)
