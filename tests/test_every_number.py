@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from humanwalk.body.loads import LOADS
 from humanwalk.body.opensim_names import COORDINATES
 from humanwalk.contact.asperity import Knot
 from humanwalk.motion.followed import REQUIRED_JOINTS
@@ -40,11 +41,13 @@ NEEDED = {
     "controller.thesis.balance.upper_body.": {"controller.thesis.balance.upper_body.enabled": "true"},
     "controller.recorded.": {"controller.recorded.angles": "still.mot"},
     "contact.asperity.": {"simulation.time_step": "0.001"},
+    "subject.age": {"subject.sex": "female"},
     "simulation.accuracy": {"simulation.integrator": "cenic", "simulation.time_step": "0"},
 }
 """What is set with a number whose name begins so, for it to have an effect."""
 
 ENTRIES = {
+    "subject.loads": [(f"{tag}.{name}", value) for tag, kind in LOADS.items() for name, value in ends(kind)],
     "pushes.given": ends(Push),
     "controller.balanced.command.points": ends(CommandPoint),
     "contact.asperity.pressure_multiplier": ends(Knot),

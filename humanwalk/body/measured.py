@@ -1,7 +1,6 @@
 """Measured segments: lengths, widths and masses out of a file, and the rest scaled to fit the person."""
 
 import csv
-import io
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -182,7 +181,11 @@ def _read_yaml(path: Path) -> Measurements:
 
 def _read_csv(path: Path) -> Measurements:
     name = printable(path)
-    rows = list(csv.reader(io.StringIO(read_text(path, MAX_FILE_SIZE)), skipinitialspace=True))
+    text = read_text(path, MAX_FILE_SIZE)
+    try:
+        rows = list(csv.reader(text.splitlines(), skipinitialspace=True))
+    except csv.Error as error:
+        raise ParameterError(f"{name}: {error}; allowed: a table with commas; save it as that") from None
     header = [cell.strip() for cell in rows[0]] if rows else []
     if "segment" not in header or set(header) - {"segment", *COLUMNS} or len(set(header)) < len(header):
         raise ParameterError(

@@ -16,12 +16,16 @@ from pydrake.systems.framework import DiagramBuilder
 
 import humanwalk
 from humanwalk.body import HYDRO_SET, POINT_SET, Skeleton, human, to_sdf
+from humanwalk.body.subject import Subject
 
 COMMITTED = Path(humanwalk.__file__).parent / "models" / "sdf" / "human.sdf"
 PEOPLE = {
     "reference": human(),
-    "child": human().scaled(mass=30.0, stature=1.3),
+    "small": human().scaled(mass=30.0, stature=1.3),
     "giant": human().scaled(mass=150.0, stature=2.1),
+    "woman": Subject(60.0, 1.65, "female").skeleton,
+    "heavy man": Subject(130.0, 1.75, "male").skeleton,
+    "boy": Subject(20.0, 1.10, "male", 6.0).skeleton,
 }
 
 

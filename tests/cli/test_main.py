@@ -3,6 +3,7 @@
 import json
 import logging
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -455,6 +456,23 @@ def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk: Any, tmp_p
 )
 def test_model_of_an_invalid_subject_is_refused(refusal: Any, arguments: Any, said: Any) -> None:
     assert said in refusal("model", *arguments, "-o", "x.sdf")
+
+
+def test_model_prints_the_segments_beside_the_table(humanwalk: Any) -> None:
+    code, out, err = humanwalk("model", "--sex", "female", "--age", "8", "--mass", "26", "--stature", "1.28")
+    assert code == 0
+    assert "26 kg, 1.28 m, beside de Leva's women of 8 years" in out
+    assert re.search(r"thigh +25\.7 \(25\.7\) +3\.25 \(3\.25\) +36 \(36\) +1\.00 +1\.00 +1\.00", out)
+    assert "left" not in out
+    assert err == ""
+
+
+def test_model_prints_the_loads(humanwalk: Any, tmp_path: Path) -> None:
+    loads = ("--load", "backpack 3 kg", "--load", "suitcase 2 kg in the left hand unknown")
+    code, _, err = humanwalk("model", *loads, "-o", "loaded.sdf")
+    assert code == 0
+    assert "backpack: 3 kg, known to the walker\nsuitcase: 2 kg, unknown to the walker\n" in err
+    assert "loaded.sdf: 46 bodies, 42 revolute joints, 75 kg, 1.75 m" in err
 
 
 def test_model_in_a_missing_folder_is_refused(refusal: Any) -> None:

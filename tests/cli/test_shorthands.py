@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.loads import AnkleWeights, Backpack, Suitcase
+from humanwalk.body.subject import Subject
 from humanwalk.choices import CONTROLLERS
 from humanwalk.cli import shorthands
 from humanwalk.cli.changes import Changes, takes_changes
@@ -162,6 +164,33 @@ def test_the_body_is_scaled() -> None:
     assert (subject.mass, subject.stature) == (60.0, 1.6)
 
 
+def test_the_person_is_described() -> None:
+    subject = changed(sex="female", age=8.0, mass=26.0, stature=1.28).subject
+    assert subject == Subject(26.0, 1.28, "female", 8.0)
+
+
+def test_loads_are_described() -> None:
+    texts = ["backpack 10 kg", "ankle weights 1.5 kg unknown", "suitcase 8 kg in the left hand"]
+    assert changed(load=texts).subject.loads == (
+        Backpack(10.0),
+        AnkleWeights(1.5, known=False),
+        Suitcase(8.0, side="Left"),
+    )
+
+
+@pytest.mark.parametrize(
+    "text", ["backpack", "bag 3 kg", "backpack 3 lb", "vest 3 kg in the right foot", "backpack -kg"]
+)
+def test_what_is_no_load_is_refused_with_the_grammar(text: str) -> None:
+    with pytest.raises(ParameterError, match=r"not a load; allowed: LOAD MASS kg .* backpack, vest"):
+        changed(load=[text])
+
+
+def test_a_load_without_a_hand_is_in_none() -> None:
+    with pytest.raises(ParameterError, match=r"subject\.loads\.0\.backpack\.side: no such field|side: no such field"):
+        changed(load=["backpack 3 kg in the left hand"])
+
+
 def test_the_description_tells_what_was_changed() -> None:
     changes = {"speed": 1.2, "terrain": "slope 3 deg", "push": ["9 N s at 1 s from behind"]}
     text = changed("walk", **changes).description
@@ -198,6 +227,8 @@ def test_walk_and_diagram_take_the_same_changes() -> None:
         shorthands.PUSH_EXAMPLE,
         shorthands.TERRAIN_GRAMMAR,
         shorthands.TERRAIN_EXAMPLE,
+        shorthands.LOAD_GRAMMAR,
+        shorthands.LOAD_EXAMPLE,
     ],
 )
 def test_help_has_the_grammars(part: str) -> None:
