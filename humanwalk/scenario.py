@@ -132,7 +132,7 @@ class Scenario:
         return [
             ("description", repr(self.description)),
             ("duration", f"{self.duration:g} s"),
-            ("subject", f"{self.subject.mass:g} kg, {self.subject.stature:g} m"),
+            ("subject", str(self.subject)),
             *((name, tag_of(tags, getattr(self, name))) for name, tags in choices.items()),
         ]
 

@@ -17,7 +17,7 @@ from humanwalk.body.measured import completed, read_measurements
 from humanwalk.body.regions import regions
 from humanwalk.body.sdf import Look
 from humanwalk.body.skeleton import MASS_RANGE_KG, REFERENCE_MASS, REFERENCE_STATURE, STATURE_RANGE_M, Skeleton
-from humanwalk.quantity import ParameterError, check, choice_list, file_path, quantity
+from humanwalk.quantity import ParameterError, check, choice_list, file_path, quantity, tag_of
 
 BODY_MASS_INDEX = (10.0, 80.0)
 """Range of mass over the square of stature [kg/m2]: adults die below 10 to 12 and cannot walk above 80 (our choice)."""
@@ -74,6 +74,13 @@ class Subject:
             raise ParameterError(
                 f"sex: unspecified is the thesis' adult body and takes no {field}; allowed: female, male; set sex"
             )
+
+    def __str__(self) -> str:
+        """Mass, stature, sex, age of a child, and loads, in one line."""
+        texts = [f"{self.mass:g} kg, {self.stature:g} m"]
+        texts += [self.sex] if self.sex != "unspecified" else []
+        texts += [f"{self.age:g} years"] if self.age < ADULT_AGE else []
+        return ", ".join((*texts, *(f"{tag_of(LOADS, load)} {load.total:g} kg" for load in self.loads)))
 
     @property
     def body(self) -> Skeleton:

@@ -9,6 +9,7 @@ from pydrake.multibody.tree import JacobianWrtVariable
 
 from humanwalk.body.contact import contact_spheres
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.loads import Backpack, Suitcase
 from humanwalk.body.mjcf import to_mjcf
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.sdf import LOOKS
@@ -16,7 +17,11 @@ from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.exchange.mujoco_map import MujocoMap
 
-SUBJECTS = [Subject(), Subject(mass=55.0, stature=1.6)]
+SUBJECTS = [
+    Subject(),
+    Subject(mass=55.0, stature=1.6),
+    Subject(26.0, 1.28, "female", 8.0, loads=(Backpack(3.0), Suitcase(2.0))),
+]
 
 
 @pytest.fixture(params=LOOKS)
@@ -69,7 +74,7 @@ class Both:
         return q, T
 
 
-@pytest.fixture(params=SUBJECTS, ids=["reference", "small"])
+@pytest.fixture(params=SUBJECTS, ids=["reference", "small", "loaded girl"])
 def both(request: pytest.FixtureRequest) -> Any:
     return Both(request.param)
 

@@ -13,6 +13,7 @@ from humanwalk.body.build import REGION_BODIES, mass_properties, person, standin
 from humanwalk.body.contact import contact_boxes, contact_spheres
 from humanwalk.body.de_leva import DE_LEVA, Sex
 from humanwalk.body.growth import ADULT_AGE, growth
+from humanwalk.body.loads import AnkleWeights, Backpack
 from humanwalk.body.regions import Regions, region_names, regions
 from humanwalk.body.segment_table import regions_of, segment_rows
 from humanwalk.body.subject import BODIES, Subject
@@ -149,6 +150,12 @@ def test_the_thesis_body_is_unchanged_by_default() -> None:
     assert Subject().body == human()
     assert Subject(55.0, 1.6).body == human().scaled(55.0, 1.6)
     assert Subject().skeleton == Subject().known_skeleton == human()
+
+
+def test_a_subject_is_described_in_a_line() -> None:
+    assert str(Subject()) == "70 kg, 1.75 m"
+    girl = Subject(26.0, 1.28, "female", 8.0, loads=(Backpack(3.0), AnkleWeights(0.5)))
+    assert str(girl) == "26 kg, 1.28 m, female, 8 years, backpack 3 kg, ankle_weights 1 kg"
 
 
 # Growth.

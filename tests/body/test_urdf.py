@@ -8,12 +8,17 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
+from humanwalk.body.loads import Backpack, Suitcase
 from humanwalk.body.plant import add_human
 from humanwalk.body.sdf import LOOKS, Look
 from humanwalk.body.subject import Subject
 from humanwalk.body.urdf import to_urdf
 
-SUBJECTS = [Subject(), Subject(mass=50.0, stature=1.5)]
+SUBJECTS = [
+    Subject(),
+    Subject(mass=50.0, stature=1.5),
+    Subject(26.0, 1.28, "female", 8.0, loads=(Backpack(3.0), Suitcase(2.0))),
+]
 
 
 def read_back(subject: Subject, look: Look = "person") -> tuple[MultibodyPlant, SceneGraph]:
@@ -34,7 +39,7 @@ def original(subject: Subject) -> tuple[MultibodyPlant, SceneGraph]:
     return plant, scene
 
 
-@pytest.mark.parametrize("subject", SUBJECTS, ids=["reference", "small"])
+@pytest.mark.parametrize("subject", SUBJECTS, ids=["reference", "small", "loaded girl"])
 def test_mass_matrix_bias_and_gravity_are_those_of_the_sdf_model(subject: Subject) -> None:
     urdf, sdf = read_back(subject)[0], original(subject)[0]
     assert JointMap.of(urdf).names == JointMap.of(sdf).names
