@@ -100,11 +100,11 @@ FIGURE: dict[Sex, dict[str, tuple[float, float]]] = {
         "Pelvis": (1.02, 1.08),
         "Lumbar_6": (0.96, 0.96),
         **{f"Lumbar_{level}": (0.92, 0.89) for level in (5, 4, 3, 2, 1)},
-        "Thoracic_10_12": (0.93, 0.89),
-        "Ribs": (0.98, 0.91),
-        "Thoracic_4_6": (0.98, 0.91),
-        "Thoracic_1_3": (0.94, 0.92),
-        "Scapula": (0.90, 0.93),
+        "Thoracic_10_12": (0.93, 0.91),
+        "Ribs": (0.98, 0.96),
+        "Thoracic_4_6": (0.98, 0.97),
+        "Thoracic_1_3": (0.95, 0.98),
+        "Scapula": (0.92, 0.98),
     },
 }
 """Depth and width of the look of a trunk relative to a man's of equal girth (our choice); 1 where not named."""

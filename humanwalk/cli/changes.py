@@ -91,8 +91,7 @@ class Changes:
         overrides = {**(base or {}), **overrides_of(self.set_)}
         for name in ("mass", "stature", "sex", "age"):
             if getattr(self, name) is not None:
-                # JSON is YAML, and quotes any character.
-                overrides[f"subject.{name}"] = json.dumps(getattr(self, name))
+                overrides[f"subject.{name}"] = repr(getattr(self, name))
         if self.load:
             overrides |= load_overrides(self.load)
         if self.terrain is not None:

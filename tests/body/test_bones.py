@@ -7,8 +7,7 @@ import pytest
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
-from humanwalk.body import human, to_sdf
-from humanwalk.body.anatomy import REFERENCE_STATURE
+from humanwalk.body import REFERENCE_STATURE, human, to_sdf
 from humanwalk.body.bones import CONTACT, bones
 from humanwalk.body.contact import contact_spheres
 from humanwalk.body.plant import kinematics_plant

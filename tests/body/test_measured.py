@@ -69,7 +69,7 @@ def test_the_body_has_what_was_measured_and_the_rest_fits(tmp_path: Path) -> Non
         assert found[name].length == pytest.approx(length, rel=1e-9), name
     for name, mass in (("right_shank", 3.0), ("left_shank", 2.8), ("head", 5.5)):
         assert found[name].mass == pytest.approx(mass, rel=1e-9), name
-    assert body.raised == (0.0, pytest.approx(0.02, abs=1e-9))
+    np.testing.assert_allclose(body.raised, (0.0, 0.02), atol=1e-9)
     # Legs are short by 5.2 cm: the trunk is longer than usual by as much, with the head.
     longer = sum(
         found[name].length - USUAL[name].length for name in ("head", "upper_trunk", "middle_trunk", "lower_trunk")
