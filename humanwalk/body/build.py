@@ -25,6 +25,10 @@ from humanwalk.sides import SIDES, Side
 SOURCE = "de Leva 1996, Table 4; children after Jensen 1989; or measured"
 
 
+SHOULDERS = ("Scapula", "Thoracic_1_3")
+"""Bodies whose look reaches to the shoulder joints."""
+
+
 @dataclass(frozen=True)
 class Share:
     """A body's part of the segment that it belongs to.
@@ -272,7 +276,8 @@ def _flesh(body: str, name: str, sex: Sex, segments: Regions) -> Vector3:
         )
         girth = math.sqrt(mass / usual_mass * usual_length / length)
         depth, width = FIGURE[sex].get(body, (1.0, 1.0))
-        return (depth * girth, width * girth, up)
+        # Shoulders end at their joints, however heavy the person is.
+        return (depth * girth, width * (across if body in SHOULDERS else girth), up)
     if name.endswith("foot"):
         return (along, across, up)
     girth = segments[name].width / _average_man()[name].width

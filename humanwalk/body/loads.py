@@ -6,6 +6,7 @@ walker's own model of its body includes the load.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal, Protocol
 
 from humanwalk.body.shapes import Box, Cylinder, Shape, Vector3
@@ -22,6 +23,20 @@ CASE: Color = (0.45, 0.16, 0.18)
 CHEST_RADII: Vector3 = (0.116, 0.168, 0.185)
 CHEST_CENTER = 0.035
 """Chest in the look of the reference human: half-axes, and height of the middle above the body's joint [m]."""
+
+STRAP_PATH: tuple[Vector3, ...] = (
+    (-0.090, 0.095, 0.170),
+    (-0.045, 0.095, 0.205),
+    (0.010, 0.095, 0.205),
+    (0.060, 0.095, 0.175),
+    (0.094, 0.092, 0.110),
+    (0.104, 0.095, 0.030),
+    (0.085, 0.125, -0.050),
+    (0.020, 0.165, -0.080),
+    (-0.060, 0.150, -0.100),
+)
+"""Left strap of a backpack on the skin of the reference human: from the bag over the shoulder, down the chest and below
+the arm back to the bag, in the frame of the rib cage [m]."""
 
 GRIP = 0.10
 """Distance of the grip of a hanging hand below the wrist of the reference human [m]."""
@@ -102,12 +117,11 @@ class Backpack:
                 POCKET,
             ),
         ]
-        top, front = 0.235 * up - center[2], CHEST_RADII[0] * along - x
-        for side, y in (("right", -0.09 * across), ("left", 0.09 * across)):
-            back, over = (0.25 * self.depth, y, 0.4 * self.height), (0.42 * front, y, top)
-            chest, hip = (0.95 * front, y, 0.10 * up - center[2]), (0.5 * self.depth, 1.7 * y, -0.3 * self.height)
-            for i, (start, end) in enumerate(((back, over), (over, chest), (chest, hip))):
-                drawn.append(capsule("", f"{side}_strap_{i}", start, end, 0.016 * across, STRAP))
+        for side, outward in (("right", -1.0), ("left", 1.0)):
+            path = [(px * along - x, outward * py * across, pz * up - center[2]) for px, py, pz in STRAP_PATH]
+            ends = ((0.5 * self.depth, *path[0][1:]), *path, (0.5 * self.depth, *path[-1][1:]))
+            for i, (start, end) in enumerate(pairwise(ends)):
+                drawn.append(capsule("", f"{side}_strap_{i}", start, end, 0.014 * across, STRAP))
         yield LoadPart("Bag", "Ribs", center, Box(self.depth, self.width, self.height), self.mass, tuple(drawn))
 
 
@@ -134,12 +148,11 @@ class Vest:
         plate = Box(self.thickness, 1.5 * ry, 1.6 * rz)
         for name, sign in (("Front", 1.0), ("Back", -1.0)):
             x = sign * (rx + 0.5 * self.thickness)
-            shell = (rx + 0.5 * self.thickness, ry + 0.3 * self.thickness, 0.95 * rz)
-            drawn = [ellipsoid("", "shell", (-0.85 * x, 0.0, 0.0), shell, CLOTH)]
-            for y in (-0.4 * ry, 0.4 * ry):
-                size = (0.5 * self.thickness, 0.28 * ry, 0.35 * rz)
-                drawn.append(ellipsoid("", f"pouch_{'right' if y < 0 else 'left'}", (0.04 * x, y, 0.0), size, POCKET))
-            yield LoadPart(name, "Ribs", (x, 0.0, CHEST_CENTER * up), plate, 0.5 * self.mass, tuple(drawn))
+            drawn = (
+                ellipsoid("", "shell", (-x, 0.0, 0.0), (rx + 0.012, ry + 0.008, 0.88 * rz), CLOTH),
+                _box("plate", (0.0, 0.0, 0.0), (self.thickness, 0.9 * ry, 0.9 * rz), POCKET),
+            )
+            yield LoadPart(name, "Ribs", (x, 0.0, CHEST_CENTER * up), plate, 0.5 * self.mass, drawn)
 
 
 @dataclass(frozen=True)
@@ -164,7 +177,7 @@ class AnkleWeights:
             shank = f"{side}Leg_Tibia"
             girth, _, up = skeleton.size(shank)
             ankle = skeleton.origins[f"{side}Leg_Ankle"][2] - skeleton.origins[shank][2]
-            cuff = Cylinder(0.062 * girth, self.height)
+            cuff = Cylinder(0.056 * girth, self.height)
             drawn = Visual("", "cuff", "cylinder", (cuff.radius, cuff.length), (0, 0, 0), (0, 0, 0), CLOTH)
             center = (0.0, 0.0, float(ankle) + 0.05 * up + 0.5 * self.height)
             yield LoadPart(f"{side}Cuff", shank, center, cuff, self.mass, (drawn,))
