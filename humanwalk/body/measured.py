@@ -3,7 +3,7 @@
 import csv
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from humanwalk.body.regions import ANKLE_HEIGHT, TRUNK, WIDTHS, Region, Regions, limb_width, region_names
@@ -39,7 +39,7 @@ class Measurement:
 class Measurements:
     """File with measured segments."""
 
-    segments: Mapping[str, Measurement]
+    segments: Mapping[str, Measurement] = field(default_factory=dict)
     """By name: head, upper_trunk, middle_trunk, lower_trunk, upper_arm, forearm, hand, thigh, shank, foot; those of
     limbs stand for both sides, or begin with right_ or left_."""
 
@@ -57,6 +57,10 @@ def read_measurements(path: Path) -> Mapping[str, Measurement]:
     given = read(path).segments
     known = [*region_names()]
     names = tuple(dict.fromkeys(name for pair in known for name in pair))
+    if not given:
+        raise ParameterError(
+            f"{printable(path)}: no segment; allowed: one or more of {', '.join(names)}; add a segment"
+        )
     for name in given:
         if name not in names:
             raise ParameterError(

@@ -141,6 +141,7 @@ def test_all_measured_may_miss_stature_and_mass_by_two_percent() -> None:
     [
         ("segment,length\nthigh,0.4\n", "columns segment, length; allowed: segment, length_m, width_m, mass_kg"),
         ("", "columns ; allowed"),
+        ("segment,mass_kg\n", "no segment; allowed: one or more of head"),
         ("segment,mass_kg\nthigh,heavy\n", "row 2: mass_kg: heavy is not a number"),
         ("segment,mass_kg\nthigh,nan\n", "segments.thigh.mass: nan is out of range"),
         ("segment,mass_kg\nthigh,-1\n", "segments.thigh.mass: -1 is out of range; allowed: 0 to 100 kg"),
@@ -157,6 +158,11 @@ def test_a_file_that_cannot_be_used_is_refused(tmp_path: Path, text: str, said: 
         _ = subject(write(tmp_path, text)).body
     assert str(error.value).startswith("subject.measured: ")
     assert said in str(error.value)
+
+
+def test_a_yaml_file_without_segments_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"a\.yaml: no segment; allowed: one or more of head"):
+        read_measurements(write(tmp_path, "", "a.yaml"))
 
 
 def test_an_unknown_format_is_refused(tmp_path: Path) -> None:
