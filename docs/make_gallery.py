@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from PIL import Image
 from rich.console import Console
 
 from humanwalk.cli.walk import walk_and_write
@@ -80,6 +81,36 @@ DIAGRAMS = {"thesis": "thesis", "balanced": "walk"}
 """A scenario of each controller that is drawn as a block diagram; all scenarios of a controller have the same wires."""
 
 
+PEOPLE = {
+    "woman": {"sex": "female", "mass": "60", "stature": "1.65", "loads": "[backpack]"},
+    "man": {"sex": "male", "mass": "110", "stature": "1.80", "loads": "[vest, ankle_weights]"},
+    "girl": {
+        "sex": "female",
+        "age": "10",
+        "mass": "33",
+        "stature": "1.40",
+        "loads": "[{suitcase: {mass: 3, side: Left}}]",
+    },
+    "boy": {"sex": "male", "age": "6", "mass": "20", "stature": "1.10"},
+}
+"""Subjects that are drawn side by side: fields of `Subject`."""
+
+
+def draw_people(output: Path, console: Console) -> None:
+    """Draw standing subjects side by side into a PNG file."""
+    stills = []
+    for name, fields in PEOPLE.items():
+        overrides = {f"subject.{field}": value for field, value in fields.items()} | {"duration": "0.3"}
+        run, still = run_of(f"people_{name}", Shot("stand", overrides), console), RUNS / f"people_{name}.png"
+        write_snapshot(run.path, still, (0.2,), 240, 400, "follow")
+        # Without the time below.
+        stills.append(Image.open(still).crop((0, 0, 240, 400)))
+    row = Image.new("RGB", (240 * len(stills), 400))
+    for place, picture in enumerate(stills):
+        row.paste(picture, (240 * place, 0))
+    row.save(output, optimize=True)
+
+
 def run_of(name: str, shot: Shot, console: Console) -> Run:
     """The run of a shot, walked if it is not there yet."""
     folder = RUNS / name
@@ -111,6 +142,7 @@ def main(names: Sequence[str]) -> None:
         make_shot(name, SHOTS[name], console)
     if names:
         return
+    draw_people(IMAGES / "subjects.png", console)
     record_video(RUNS / "push", IMAGES / "walker.webp", FIRST_PICTURE)
     write_gait_figures(IMAGES / "thesis")
     for controller, scenario in DIAGRAMS.items():

@@ -206,7 +206,7 @@ def test_huge_whole_number_is_refused(key: str, value: str) -> None:
         ("start.joint_angles", "[1]", "name: value pairs"),
         ("start.joint_angles", "{1: 0.2}", "name: value pairs"),
         ("controller.thesis.gains.joints", "{a: 3}", "allowed: kp, kd"),
-        ("subject.mass", "-3", "allowed: 30 to 200 kg"),
+        ("subject.mass", "-3", "allowed: 12 to 200 kg"),
         ("contact", "pont", "did you mean point?"),
         ("contact", "[point]", "allowed: point, hydroelastic, asperity"),
         ("contact", "null", "allowed: point, hydroelastic, asperity"),
@@ -387,7 +387,9 @@ def test_every_valid_number_survives_dump_and_parse(data: Any) -> None:
     try:
         scenario = parse_scenario("", {key: repr(value) for key, value in flat.items()})
     except ParameterError as error:
-        assert str(error).startswith(("simulation.time_step", "pushes.random_interval"))
+        assert str(error).startswith(
+            ("simulation.time_step", "pushes.random_interval", "subject.mass", "subject.stature", "subject.sex")
+        )
         return
     for key, value in flat.items():
         found = scenario

@@ -295,7 +295,7 @@ def test_shown_commands_call_the_program_as_it_was_called(
         (("none.yaml",), "no such scenario or file"),
         (("--set", "controller.thesis.gait.path.step_hight=0.1"), "did you mean step_height?"),
         (("--set", "controller.thesis.gait.path.step_length=50"), "write 0.5 (m)"),
-        (("--set", "subject.mass=-3"), "allowed: 30 to 200 kg"),
+        (("--set", "subject.mass=-3"), "allowed: 12 to 200 kg"),
         (("--set", "controller.thesis.gait.path.step_height"), "FIELD=VALUE"),
         (("--set", "=3"), "FIELD=VALUE"),
         (("--set", "duration=[1"), "not YAML"),
@@ -450,7 +450,7 @@ def test_model_for_mujoco_is_written_where_the_file_is_xml(humanwalk: Any, tmp_p
     [
         (("--mass", "-3"), "mass: -3"),
         (("--stature", "175"), "centimeters"),
-        (("--mass", "nan"), "finite"),
+        (("--mass", "nan"), "is not a number"),
     ],
     ids=str,
 )
