@@ -12,7 +12,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, DiagramBuilder, System
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput, Multiplexer, Sine
 
-from humanwalk.body.plant import Subject, add_human
+from humanwalk.body.plant import add_human
+from humanwalk.body.subject import Subject
 from humanwalk.control.pd_control import PdLaw, install_gains
 from humanwalk.numerics import Array
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
