@@ -39,6 +39,9 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("thesis_step_height", 9),
         ("actuations", 3),
         ("likeness", 6),
+        ("subjects_adults", 100),
+        ("subjects_children", 40),
+        ("subjects_loads", 40),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
@@ -50,6 +53,16 @@ def test_paths_are_those_of_the_shipped_scenarios() -> None:
     for point in study.points:
         shipped = load_scenario(point["path"])
         assert study.scenario_at(point) == replace(shipped, description=study.scenario.description)
+
+
+@pytest.mark.parametrize("name", ["subjects_adults", "subjects_children"])
+def test_subjects_walk_at_one_dimensionless_speed(name: str) -> None:
+    study = load_study(name)
+    scenarios = [study.scenario_at(point) for point in study.points]
+    for scenario in scenarios:
+        leg, speed = scenario.subject.body.hip_height, scenario.controller.commanded_speed
+        assert speed == pytest.approx(1.2 * math.sqrt(leg / 0.93), abs=6e-4)
+    assert {scenario.subject.sex for scenario in scenarios} == {"female", "male"}
 
 
 def test_pushes_leave_time_to_fall() -> None:
