@@ -121,10 +121,11 @@ class SoleExtent:
 
 
 def sole_extent(skeleton: Skeleton) -> SoleExtent:
-    """Return the rectangle around a sole with straight toes."""
-    scale = skeleton.stature / REFERENCE_STATURE
-    back, front = -SOLE_PARTS[0].x[0] * scale, SOLE_PARTS[-1].x[1] * scale
-    return SoleExtent(back, front, 0.5 * scale * max(part.width for part in SOLE_PARTS))
+    """Return the rectangle around a sole with straight toes, of the smaller foot if they differ."""
+    sizes = [skeleton.size(f"{side}Leg_Ankle") for side in SIDES]
+    length, width = min(size[0] for size in sizes), min(size[1] for size in sizes)
+    back, front = -SOLE_PARTS[0].x[0] * length, SOLE_PARTS[-1].x[1] * length
+    return SoleExtent(back, front, 0.5 * width * max(part.width for part in SOLE_PARTS))
 
 
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:

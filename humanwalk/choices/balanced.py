@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
+from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
@@ -13,7 +14,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.subject import Subject
 from humanwalk.choices.controller import Command
-from humanwalk.choices.start import StartPosture
+from humanwalk.choices.start import StartPosture, load_lean
 from humanwalk.choices.world import World
 from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
@@ -108,12 +109,17 @@ class BalancedController:
         return np.where(foot, gains.foot_stiffness, 0.0), np.where(foot, gains.foot_damping, gains.damping)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
-        """Standing on bent legs, the soles parallel to the ground along x."""
+        """Standing on bent legs, the soles parallel to the ground along x; it leans against known loads."""
+        lean = load_lean(subject)
         slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
         angles = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
         for leg in LEGS.values():
-            angles |= {leg.hip_flexion: START_FLEXION, leg.knee: 2.0 * START_FLEXION, leg.ankle: START_FLEXION + slope}
-        return StartPosture(angles)
+            angles |= {
+                leg.hip_flexion: START_FLEXION,
+                leg.knee: 2.0 * START_FLEXION,
+                leg.ankle: START_FLEXION + slope + lean,
+            }
+        return StartPosture(angles, RigidTransform(RollPitchYaw(0.0, lean, 0.0), np.zeros(3)))
 
     def add_to(self, world: World) -> Command:
         """Add command, planner and controller.

@@ -57,6 +57,15 @@ class StartPosture:
     X_WP: RigidTransform = RigidTransform()
 
 
+def load_lean(subject: Subject) -> float:
+    """Forward rotation of the whole body about the ankles against the loads that the person knows [rad].
+
+    It puts the center of mass with these loads above the point where it is without them; 0 without loads.
+    """
+    free, carrying = subject.body, subject.known_skeleton
+    return math.atan2(float(free.com[0] - carrying.com[0]), float(carrying.com[2]) - free.ankle_height("Right"))
+
+
 def start_positions(
     subject: Subject, terrain: Terrain, start: StartParameters, posture: StartPosture, seed: int
 ) -> Array:

@@ -11,9 +11,11 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS, PELVIS
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.choices import ThesisController, start
-from humanwalk.choices.start import StartParameters
+from humanwalk.choices.start import StartParameters, start_positions
 from humanwalk.control.reach import require_reachable
 from humanwalk.diagrams.world import add_world
 from humanwalk.gait.foot_cycle import minimum_offset
@@ -107,6 +109,33 @@ def test_noise_of_rates_gains_and_angles_is_independent(joints: JointMap) -> Non
     assert inside.sum() > 25
     assert np.abs(np.corrcoef(errors[:, inside]) - np.eye(4)).max() < 0.5
     np.testing.assert_allclose(np.std(errors[:, inside], axis=1), 1e-3, rtol=0.35)
+
+
+def standing(loads: str) -> tuple[float, Array, Array]:
+    """Center of mass before the ankle [m], rotation of the right sole, and of the pelvis, at the start of a walk."""
+    scenario = load_scenario("walk", {"subject.loads": loads})
+    subject, terrain = scenario.subject, scenario.terrain
+    posture = scenario.controller.start_posture(subject, terrain)
+    plant = kinematics_plant(subject)
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, start_positions(subject, terrain, scenario.start, posture, scenario.seed))
+    ankle, pelvis = (plant.GetFrameByName(name).CalcPoseInWorld(context) for name in (LEGS["Right"].sole, PELVIS))
+    com = plant.CalcCenterOfMassPositionInWorld(context)
+    return float(com[0] - ankle.translation()[0]), ankle.rotation().matrix(), pelvis.rotation().matrix()
+
+
+@pytest.mark.parametrize("mass", [5, 20, 40])
+def test_the_balanced_walker_leans_against_the_loads_that_it_knows(mass: int) -> None:
+    free, level, upright = standing("[]")
+    np.testing.assert_array_equal(upright, np.eye(3))
+    ahead, sole, pelvis = standing(f"[{{backpack: {{mass: {mass}}}}}]")
+    # Bent legs move the lean's pivot: the compensation is good to a centimeter, of 12 cm at most.
+    assert ahead == pytest.approx(free, abs=0.01)
+    assert pelvis[0, 2] > 0.0
+    np.testing.assert_allclose(sole, level, atol=1e-12)
+    unknown, _, still_upright = standing(f"[{{backpack: {{mass: {mass}, known: false}}}}]")
+    assert unknown == free
+    np.testing.assert_array_equal(still_upright, np.eye(3))
 
 
 @pytest.mark.parametrize(
