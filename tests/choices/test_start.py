@@ -15,7 +15,7 @@ from humanwalk.body.limbs import LEGS, PELVIS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.choices import ThesisController, start
-from humanwalk.choices.start import StartParameters, start_positions
+from humanwalk.choices.start import StartParameters
 from humanwalk.control.reach import require_reachable
 from humanwalk.diagrams.world import add_world
 from humanwalk.gait.foot_cycle import minimum_offset
@@ -114,11 +114,9 @@ def test_noise_of_rates_gains_and_angles_is_independent(joints: JointMap) -> Non
 def standing(loads: str) -> tuple[float, Array, Array]:
     """Center of mass before the ankle [m], rotation of the right sole, and of the pelvis, at the start of a walk."""
     scenario = load_scenario("walk", {"subject.loads": loads})
-    subject, terrain = scenario.subject, scenario.terrain
-    posture = scenario.controller.start_posture(subject, terrain)
-    plant = kinematics_plant(subject)
+    plant = kinematics_plant(scenario.subject)
     context = plant.CreateDefaultContext()
-    plant.SetPositions(context, start_positions(subject, terrain, scenario.start, posture, scenario.seed))
+    plant.SetPositions(context, start_positions(scenario))
     ankle, pelvis = (plant.GetFrameByName(name).CalcPoseInWorld(context) for name in (LEGS["Right"].sole, PELVIS))
     com = plant.CalcCenterOfMassPositionInWorld(context)
     return float(com[0] - ankle.translation()[0]), ankle.rotation().matrix(), pelvis.rotation().matrix()
