@@ -16,7 +16,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.markers import markers
 from humanwalk.body.pelvic_plane import PELVIC_TILT, plane_tilt
-from humanwalk.body.plant import Subject
+from humanwalk.body.subject import Subject
 from humanwalk.measures.curves import ANGLES
 from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
 

@@ -5,8 +5,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from humanwalk.body import REFERENCE_STATURE, SIDES, Side
+from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.shapes import Vector3
 from humanwalk.measures.center_of_pressure import ROLL, backward_travel, cop_paths
 from humanwalk.measures.walk_measures import Walk
 from humanwalk.run.folder import Run
@@ -26,7 +28,7 @@ def cop_under_soles(run: Run) -> Figure | None:
     figure = new_figure("Center of pressure under the soles, every stride in the frame of its footprint", 4.4, 2, 2)
     for column, side in enumerate(SIDES):
         under, over = figure.axes[column], figure.axes[2 + column]
-        _sole(under, run.scenario.subject.stature / REFERENCE_STATURE, side)
+        _sole(under, run.scenario.subject.skeleton.size(LEGS[side].hindfoot), side)
         for path in filter(len, paths[side]):
             cycle, forward, left = path.T * np.array([[1.0], [100.0], [100.0]])
             rolling = (cycle >= ROLL[0]) & (cycle <= ROLL[1])
@@ -47,10 +49,11 @@ def cop_under_soles(run: Run) -> Figure | None:
     return figure
 
 
-def _sole(axes: Axes, scale: float, side: Side) -> None:
-    """Draw the outline of the sole, toes to the right."""
+def _sole(axes: Axes, size: Vector3, side: Side) -> None:
+    """Draw the outline of the sole, toes to the right; its size is relative to the reference human's."""
+    along, across, _ = size
     for part in SOLE_PARTS:
-        back, front, width = (100.0 * scale * length for length in (*part.x, part.width))
+        back, front, width = 100.0 * along * part.x[0], 100.0 * along * part.x[1], 100.0 * across * part.width
         axes.add_patch(
             Rectangle((back, -width / 2), front - back, width, facecolor=(*SIDE[side], 0.13), edgecolor="none")
         )
