@@ -14,7 +14,7 @@ from humanwalk.numerics import Array
 from humanwalk.scenario import Scenario
 
 TIME_TO_LIE = 1.5
-"""Time from the detection of a fall, with the pelvis at 0.6 of its height, until the body lies [s]."""
+"""Time from the detection of a fall, with the pelvis at half of its height, until the body lies [s]."""
 
 
 def replay_duration(summary: Summary) -> float:

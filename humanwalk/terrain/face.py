@@ -41,6 +41,8 @@ class Face(NamedTuple):
     @property
     def R_SW(self) -> Array:
         """Axes of the face, shape (3, 3); see `Terrain.axes`."""
+        if self.is_level:
+            return np.eye(3)
         return surface_axes(np.array((-self.gradient[0], -self.gradient[1], 1.0)))
 
     @property

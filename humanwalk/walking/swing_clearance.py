@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.body.contact import SoleExtent
-from humanwalk.numerics import Array, Mask
+from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import quantity
 from humanwalk.terrain.terrain import Ground
@@ -29,6 +29,9 @@ SAMPLES = 4 * INTERVALS + 1
 
 TIMES = np.linspace(0.0, 1.0, SAMPLES)
 """Progress of the swing at which the ground is tried."""
+
+WIDTH = 10
+"""Number of samples before and after a time for whose ground its lift is sufficient: a sixth of the swing."""
 
 ENDING = 0.25
 """Part of the swing before touchdown in which the margin decreases."""
@@ -133,30 +136,17 @@ def clearance(
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
     stands_out = np.interp(moved, share, above)
     needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), 0.0)
-    needed *= quintic_blend(np.clip(TIMES / depart, 0.0, 1.0))[0] if depart > 0.0 else 1.0
-    needed *= quintic_blend(np.clip((1.0 - TIMES) / (1.0 - arrive), 0.0, 1.0))[0] if arrive < 1.0 else 1.0
-    lift = np.array([needed.max(where=_is_around(knot, depart, arrive), initial=0.0) for knot in _knots()])
+    # Widened and then averaged over the same time, it is still sufficient, and smooth.
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(needed, 2 * WIDTH), 2 * WIDTH + 1).max(axis=1)
+    smooth = np.lib.stride_tricks.sliding_window_view(around, 2 * WIDTH + 1) @ np.hanning(2 * WIDTH + 3)[1:-1]
+    lift = smooth / (WIDTH + 1.0)
     # The foot does not sink between two heights.
     lift = np.minimum(np.maximum.accumulate(lift), np.maximum.accumulate(lift[::-1])[::-1])
-    return Clearance(tuple(lift.tolist()), depart, arrive)
-
-
-def _knots() -> Array:
-    """Progress of the swing at which the additional lift is given."""
-    return np.linspace(0.0, 1.0, INTERVALS + 1)[1:-1]
-
-
-def _is_around(knot: float, depart: float, arrive: float) -> Mask:
-    """Whether a knot counts for each of `TIMES`: in both intervals beside it, but not across depart or arrive."""
-    width = 1.0 / INTERVALS + 1e-9
-    low = knot - width if knot >= depart else knot - 1e-9
-    high = knot + width if knot <= arrive else knot + 1e-9
-    around: Mask = (low <= TIMES) & (high >= TIMES)
-    if knot < depart:
-        around &= knot + 1e-9 >= TIMES
-    if knot > arrive:
-        around &= knot - 1e-9 <= TIMES
-    return around
+    ends = WIDTH / (SAMPLES - 1)
+    lift *= quintic_blend(np.clip(TIMES / max(depart, ends), 0.0, 1.0))[0]
+    lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, ends), 0.0, 1.0))[0]
+    every = (SAMPLES - 1) // INTERVALS
+    return Clearance(tuple(lift[every:-1:every].tolist()), depart, arrive)
 
 
 def height_above_plane(

@@ -34,7 +34,7 @@ def test_body_lies_on_the_ground_at_the_end(axis: int, sign: float, terrain: Pla
     falling = ragdoll.GetSubsystemByName("plant")
     inner = falling.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     falling.SetPositionsAndVelocities(inner, state)
-    # The walker falls to 0.6 of its height before.
+    # The walker falls to half of its height before.
     simulator.AdvanceTo(TIME_TO_LIE + 0.8)
     for index in falling.GetBodyIndices(falling.GetModelInstanceByName("human")):
         p_WB = falling.get_body(index).EvalPoseInWorld(inner).translation()

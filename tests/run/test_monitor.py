@@ -57,8 +57,9 @@ def test_fall_ends_the_simulation_when_the_pelvis_is_too_low(falling_plant: Mult
 def test_fall_is_relative_to_the_initial_height(falling_plant: MultibodyPlant) -> None:
     monitor = Monitor(falling_plant, LEVEL)
     monitor(context_at(falling_plant, 2.0))
-    assert monitor(context_at(falling_plant, 1.25, 0.1)).severity() == EventStatus.Severity.kSucceeded
-    assert monitor(context_at(falling_plant, 1.15, 0.2)).severity() == EventStatus.Severity.kReachedTermination
+    above, below = 2.0 * FALL_HEIGHT_SHARE + 0.05, 2.0 * FALL_HEIGHT_SHARE - 0.05
+    assert monitor(context_at(falling_plant, above, 0.1)).severity() == EventStatus.Severity.kSucceeded
+    assert monitor(context_at(falling_plant, below, 0.2)).severity() == EventStatus.Severity.kReachedTermination
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

@@ -45,3 +45,15 @@ def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forwar
 
 def test_the_nominal_zero_moment_point_is_ahead_of_the_ankle() -> None:
     assert SUPPORT.center_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.center)
+
+
+@given(st.complex_numbers(max_magnitude=1.0), st.floats(0.0, 8.0))
+def test_the_zero_moment_point_corrects_small_errors_and_no_more_than_the_foot_allows(
+    error: complex, growth: float
+) -> None:
+    support = BaseOfSupport()
+    corrected = support.correctable(error, growth)
+    assert abs(corrected.real) <= growth * (support.center + support.back) + 1e-12
+    assert abs(corrected.imag) <= growth * support.half_width + 1e-12
+    assert abs(error - corrected) <= abs(error) + 1e-12
+    assert support.correctable(0.001 * corrected, growth) == pytest.approx(0.001 * corrected)

@@ -66,3 +66,11 @@ def test_the_mean_height_reaches_its_goal_within_the_limit_without_overshoot(
         height += 0.004 * rate
         assert min(start, end) - 1e-6 <= height <= max(start, end) + 1e-6
     assert height == pytest.approx(end, abs=1e-4)
+
+
+@given(st.floats(0.0, 0.3), st.floats(0.0, 1.0))
+def test_the_center_of_mass_is_lower_for_a_high_step_up_or_down(rise: float, rolling: float) -> None:
+    height = ComHeight()
+    assert height.max_for_step(rise, rolling, 0.98) == height.max_for_step(-rise, rolling, 0.98)
+    assert height.max_for_step(rise, rolling, 0.98) <= height.max_for_step(0.5 * rise, rolling, 0.98)
+    assert height.max_for_step(0.0, 1.0, 0.98) > height.walking * 0.98

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.motions import PlanarMotion, ScalarMotion, blend
+from humanwalk.walking.motions import PiecewiseCubic, PlanarMotion, ScalarMotion, blend
 
 DT = 0.004
 numbers = st.floats(-10.0, 10.0)
@@ -95,3 +95,12 @@ def test_a_motion_with_the_sideways_of_another_has_both(heading: float) -> None:
     for got, x, y in zip(mixed, along, across, strict=True):
         assert (got / u).real == pytest.approx((x / u).real)
         assert (got / u).imag == pytest.approx((y / u).imag)
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=12), st.floats(0.0, 1.0))
+def test_a_monotone_spline_stays_between_its_values(values: list[float], progress: float) -> None:
+    spline, n = PiecewiseCubic.through(values), len(values) - 1
+    i = min(int(progress * n), n - 1)
+    low, high = sorted(values[i : i + 2])
+    assert low - 1e-9 <= spline.at(progress).value <= high + 1e-9
+    assert [spline.at(k / n).value for k in range(n + 1)] == pytest.approx(values, abs=1e-9)

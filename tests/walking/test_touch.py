@@ -1,0 +1,52 @@
+"""What the feet feel: feet that should stand, with their pressure if they are loaded."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from humanwalk.body.contact import SoleExtent
+from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.touch import standing_feet, touches
+from humanwalk.walking.walking_reference import BodyState, FootState, Phase
+
+PARAMETERS, SOLE, ANKLE = StepPlannerParameters(), SoleExtent(0.055, 0.211, 0.048), 0.07
+TIMING = PARAMETERS.timing
+FOOT = FootState(0.1j, 0j, ANKLE, 0.0, 0.0, 0.0, 0.0, force=350.0, pressure=np.array((0.03, 0.1, 0.0)))
+BODY = BodyState(0j, 0j, 0.95, right=replace(FOOT, position=-0.1j), left=FOOT)
+
+
+def state_at(phase: Phase, elapsed: float = 0.3) -> PlannerState:
+    feet, path = (Foothold(-0.1j, 0.0), Foothold(0.1j, 0.0)), CommandedPath.begin(0.0, 0.0)
+    return PlannerState(phase, elapsed, "Left", *feet, 0.0, 0.0, 0.0, path, height=0.9, steps=2)
+
+
+@pytest.mark.parametrize(
+    "phase, feet", [(Phase.STAND, (0, 1)), (Phase.DOUBLE_SUPPORT, (1,)), (Phase.SINGLE_SUPPORT, (1,))]
+)
+def test_the_stance_foot_feels_the_ground_and_in_standing_both(phase: Phase, feet: tuple[int, ...]) -> None:
+    assert tuple(touch.foot for touch in touches(state_at(phase), BODY, PARAMETERS, SOLE, ANKLE)) == feet
+    assert len(standing_feet(state_at(phase))) == len(feet)
+
+
+def test_a_loaded_foot_feels_its_pressure_and_knows_its_heel() -> None:
+    (touch,) = touches(state_at(Phase.SINGLE_SUPPORT), BODY, PARAMETERS, SOLE, ANKLE)
+    assert touch.heel == pytest.approx((-SOLE.back, 0.1, 0.0))
+    assert touch.pressure_ahead == pytest.approx(0.03)
+    assert touch.pressure is FOOT.pressure
+
+
+def test_a_landing_foot_without_load_feels_no_pressure_and_later_nothing() -> None:
+    airborne = replace(BODY, left=replace(FOOT, force=0.0))
+    (touch,) = touches(state_at(Phase.DOUBLE_SUPPORT, 0.02), airborne, PARAMETERS, SOLE, ANKLE)
+    assert touch.pressure is None
+    assert touches(state_at(Phase.SINGLE_SUPPORT), airborne, PARAMETERS, SOLE, ANKLE) == ()
+
+
+def test_a_foot_rolls_from_heel_off_on() -> None:
+    for elapsed, rolls in ((TIMING.step - 1.5 * PARAMETERS.rockers.ball, False), (TIMING.step - 0.01, True)):
+        (touch,) = touches(state_at(Phase.SINGLE_SUPPORT, elapsed), BODY, PARAMETERS, SOLE, ANKLE)
+        assert touch.is_rolling is rolls
