@@ -82,8 +82,8 @@ def completed(expected: Regions, measured: Mapping[str, Measurement]) -> Regions
     """Return the segments of a person, as measured where they are, else scaled to reach stature and body mass.
 
     A length that was not measured is the table's times one factor for trunk, head and legs, which makes the stature. A
-    mass that was not measured is the table's, in proportion to length and square of width where these were measured,
-    times one factor that makes the body mass.
+    mass that was not measured is the table's, in proportion to length and, but for the trunk, square of width where
+    these were measured, times one factor that makes the body mass.
 
     Args:
         expected: The person's segments after the table; they have its stature and mass.
@@ -150,7 +150,8 @@ def _masses(expected: Regions, measured: Mapping[str, Measurement], lengths: Map
     given = {name: found.mass for name, found in measured.items() if found.mass}
     usual = {}
     for name, region in expected.items():
-        width = measured[name].width if name in measured else 0.0
+        # Widths of the trunk are distances of joints, not girths.
+        width = measured[name].width if name in measured and name not in TRUNK else 0.0
         usual[name] = region.mass * lengths[name] / region.length * ((width or region.width) / region.width) ** 2
     free = math.fsum(mass for name, mass in usual.items() if name not in given)
     taken = math.fsum(given.values())

@@ -115,6 +115,12 @@ def test_any_measured_segments_keep_stature_and_mass(factors: dict[str, tuple[fl
         assert min(found[name].gyration) > 0.0
 
 
+def test_the_distance_of_the_shoulders_moves_the_arms_and_no_mass(tmp_path: Path) -> None:
+    body = subject(write(tmp_path, "segment,width_m\nupper_trunk,0.40\n")).body
+    assert body.origins["LeftArm_Humor_Upper_Arm"][1] == pytest.approx(0.20, abs=1e-9)
+    assert regions_of(body, USUAL)["upper_trunk"].mass == pytest.approx(USUAL["upper_trunk"].mass, rel=1e-9)
+
+
 def test_nothing_measured_changes_nothing() -> None:
     for name, found in completed(USUAL, {}).items():
         np.testing.assert_allclose(
