@@ -45,7 +45,13 @@ class Marker:
 def markers(skeleton: Skeleton) -> tuple[Marker, ...]:
     """Return every marker of a body, from the head down, right before left."""
     paired = [side for marker in _right() for side in (marker, marker.mirrored())]
-    return tuple(marker.scaled(skeleton.size(marker.body)) for marker in (*paired, *_middle()))
+    return tuple(marker.scaled(_size(skeleton, marker)) for marker in (*paired, *_middle()))
+
+
+def _size(skeleton: Skeleton, marker: Marker) -> Vector3:
+    """Factors along x, y, z; the iliac spines keep the tilt of their plane, `humanwalk.body.pelvic_plane`."""
+    along_x, along_y, along_z = skeleton.size(marker.body)
+    return (along_x, along_y, along_x if marker.name[1:] in ("ASI", "PSI") else along_z)
 
 
 def _middle() -> tuple[Marker, ...]:

@@ -48,9 +48,12 @@ def test_the_pelvic_plane_leans_forward_in_standing() -> None:
     assert angle("hip", posture()) == pytest.approx(np.degrees(PELVIC_TILT))
 
 
-@pytest.mark.parametrize(("mass", "stature"), [(50.0, 1.5), (110.0, 1.95)])
-def test_bodies_of_any_size_have_the_same_pelvic_plane(mass: float, stature: float) -> None:
-    assert plane_tilt(Subject(mass, stature).skeleton) == pytest.approx(PELVIC_TILT)
+@pytest.mark.parametrize(
+    "subject",
+    [Subject(50.0, 1.5), Subject(110.0, 1.95), Subject(60.0, 1.65, "female"), Subject(30.0, 1.35, "male", 9.0)],
+)
+def test_every_body_has_the_same_pelvic_plane(subject: Subject) -> None:
+    assert plane_tilt(subject.skeleton) == pytest.approx(PELVIC_TILT)
 
 
 def test_hip_joint_is_where_clinical_regressions_put_it() -> None:
