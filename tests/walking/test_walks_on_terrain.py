@@ -11,25 +11,29 @@ pytestmark = pytest.mark.slow
 TEN_DEGREES, SIX_DEGREES, FOUR_DEGREES = np.deg2rad((10.0, 6.0, 4.0)).tolist()
 
 
+SLOW_WALK = {"controller.balanced.command.points": "[{time: 0.0, forward: 0.8}]"}
+
+
 @pytest.mark.parametrize(
-    "slope, cross_slope, knowledge",
-    [
-        (TEN_DEGREES, 0.0, "exact"),
-        (-TEN_DEGREES, 0.0, "exact"),
-        (0.0, SIX_DEGREES, "exact"),
-        (FOUR_DEGREES, 0.0, "blind"),
-    ],
+    "slope, cross_slope", [(TEN_DEGREES, 0.0), (-TEN_DEGREES, 0.0), (0.0, SIX_DEGREES)], ids=["up", "down", "across"]
 )
-def test_it_walks_on_slopes_at_the_height_of_level_walking(slope: float, cross_slope: float, knowledge: str) -> None:
+def test_it_walks_on_slopes_at_the_height_of_level_walking(slope: float, cross_slope: float) -> None:
     terrain = f"{{plane: {{slope: {slope}, cross_slope: {cross_slope}}}}}"
-    points = "[{time: 0.0, forward: 0.8}]"
-    fields = {"terrain": terrain, "controller.balanced.command.points": points}
-    outcome = simulate(load_scenario("walk", {"duration": "5", "controller.balanced.knowledge": knowledge, **fields}))
+    outcome = simulate(load_scenario("walk", {"duration": "5", "terrain": terrain, **SLOW_WALK}))
     assert outcome.end == "completed"
     x, y, z = (outcome.signals[f"com.{axis}_m"].to_numpy() for axis in "xyz")
     assert x[-1] > 2.0
     ground = x * np.tan(slope) + y * np.tan(cross_slope)
     np.testing.assert_allclose(z - ground, 0.94, atol=0.07)
+
+
+@pytest.mark.parametrize("slope", [FOUR_DEGREES, -FOUR_DEGREES])
+def test_it_finds_a_slope_by_touch(slope: float) -> None:
+    terrain = f"{{course: {{run_up: 1.0, pieces: [{{slope: {{slope: {slope}, length: 20}}}}]}}}}"
+    knowledge = {"controller.balanced.knowledge": "blind"}
+    outcome = simulate(load_scenario("walk", {"duration": "7", "terrain": terrain, **SLOW_WALK, **knowledge}))
+    assert outcome.end == "completed"
+    assert outcome.signals["com.x_m"].to_numpy()[-1] > 3.0
 
 
 def test_climbing_stairs_raises_the_body_by_their_height() -> None:
