@@ -25,7 +25,7 @@ from humanwalk.study.cluster import KILLS_ALLOWED, local_client, remote_client
 from humanwalk.study.execute import Shard, run_jobs, run_study
 from humanwalk.study.row import Job, Row, run_columns
 from humanwalk.study.study import parse_study
-from humanwalk.study.table import ROW, TABLE, read_table
+from humanwalk.study.table import ROW, TABLE, read_table, table_columns
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "from humanwalk.cli.main import main; main()"
@@ -198,14 +198,16 @@ def test_signal_to_command_and_workers_ends_the_study_which_resumes(tmp_path: Pa
 FULL = (
     "import resource, signal;"
     "signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
-    "resource.setrlimit(resource.RLIMIT_FSIZE, (14_000, 14_000));"
+    "resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}));"
 )
 
 
 def test_full_disk_keeps_the_rows_that_it_has_room_for(tmp_path: Path) -> None:
     """A limit of the size of files stands for the full disk."""
-    (tmp_path / "study.yaml").write_text("set: {duration: 0.02}\nfactors: {seed: {seeds: {count: 6}}}")
-    process = start(tmp_path, before=FULL)
+    study = "set: {duration: 0.02}\nfactors: {seed: {seeds: {count: 6}}}"
+    (tmp_path / "study.yaml").write_text(study)
+    header = len(",".join(table_columns(parse_study(study))))
+    process = start(tmp_path, before=FULL.format(limit=header + 4000))
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 2, errors
     assert errors.splitlines()[-1].startswith("humanwalk: out/table.csv: File too large")
