@@ -1,9 +1,11 @@
 """Standard streams that fail: a full disk, a closed terminal, a reader that has stopped."""
 
+import _weakrefset
 import logging
 import os
 import signal
 import sys
+import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -54,25 +56,25 @@ def open_missing() -> None:
             setattr(sys, name, os.fdopen(number, mode, closefd=False))
 
 
-NOT_INTERRUPTED = ("<frozen importlib._bootstrap>", logging.__file__)
-"""Code in which no exception may be raised: it aborts a compiled extension that is being loaded, and Drake's log, which
-calls Python's, drops it."""
+NOT_INTERRUPTED = ("<frozen importlib._bootstrap>", logging.__file__, weakref.__file__, _weakrefset.__file__)
+"""Code in which no exception may be raised: it aborts a compiled extension that is being loaded; Drake's log, which
+calls Python's, drops it; Python drops it in callbacks of weak references, as in destructors, and prints a traceback."""
 
 WAITING_PERIOD = 0.05
 """Time between two looks at whether such code has ended [s]."""
 
 DROPPED_PERIOD = 5.0
-"""Time after which a signal that should have ended the program is sent again [s]: Python drops an exception that is
-raised in a destructor. Longer than any clean-up."""
+"""Time after which a signal that should have ended the program is sent again [s], in case its exception was dropped.
+Longer than any clean-up."""
 
 
 @contextmanager
 def signals_as_exits() -> Iterator[None]:
     """Within the block, which is the program, SIGTERM and SIGHUP end it like Ctrl-C, unless they are ignored.
 
-    All three wait for the end of imports and log messages, see `NOT_INTERRUPTED`, and are sent again if the program
-    goes on, see `DROPPED_PERIOD`. After the block all is written: a signal ends the process at once, since Python
-    prints tracebacks of exceptions that are raised while it shuts down.
+    All three wait for the end of imports, log messages and destructors, see `NOT_INTERRUPTED`, and are sent again if
+    the program goes on, see `DROPPED_PERIOD`. After the block all is written: a signal ends the process at once, since
+    Python prints tracebacks of exceptions that are raised while it shuts down.
     """
     again: list[int] = []
 
@@ -101,6 +103,8 @@ def signals_as_exits() -> Iterator[None]:
 
 
 def _must_wait(frame: FrameType | None) -> bool:
-    while frame is not None and frame.f_code.co_filename not in NOT_INTERRUPTED:
+    while frame is not None:
+        if frame.f_code.co_filename in NOT_INTERRUPTED or frame.f_code.co_name == "__del__":
+            return True
         frame = frame.f_back
-    return frame is not None
+    return False

@@ -187,16 +187,37 @@ with signals_as_exits():
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signal_that_python_drops_is_sent_again(number: Any) -> None:
+def test_signal_in_a_destructor_waits_for_its_end(number: Any) -> None:
+    """Python would drop the exception, and print a traceback."""
     code = f"""{HEAR}
 import os, time
-from humanwalk.cli import streams
-streams.DROPPED_PERIOD = 0.1
-class Dropping:
+from humanwalk.cli.streams import signals_as_exits
+class Ending:
     def __del__(self):
         os.kill(os.getpid(), {int(number)})
+with signals_as_exits():
+    Ending()
+    print("goes on", flush=True)
+    time.sleep(60)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=50)
+    assert done.stdout == "goes on\n"
+    assert "ignored" not in done.stderr
+    assert done.returncode in (128 + number, -number)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal_that_python_drops_is_sent_again(number: Any) -> None:
+    code = f"""{HEAR}
+import os, time, weakref
+from humanwalk.cli import streams
+streams.DROPPED_PERIOD = 0.1
+class Thing:
+    pass
 with streams.signals_as_exits():
-    Dropping()
+    thing = Thing()
+    reference = weakref.ref(thing, lambda _: os.kill(os.getpid(), {int(number)}))
+    del thing
     print("goes on", flush=True)
     time.sleep(60)
 """
