@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
@@ -77,9 +77,15 @@ def wait_until(condition: Callable[[], object]) -> None:
 
 
 def workers_of(process: subprocess.Popen[str]) -> list[psutil.Process]:
-    """Worker processes of a command."""
-    children = psutil.Process(process.pid).children(recursive=True)
-    return [child for child in children if "spawn_main" in " ".join(child.cmdline())]
+    """Worker processes of a command that have not ended."""
+    workers = []
+    # The command, or a child, may end at any time.
+    with suppress(psutil.NoSuchProcess):
+        for child in psutil.Process(process.pid).children(recursive=True):
+            with suppress(psutil.NoSuchProcess):
+                if "spawn_main" in " ".join(child.cmdline()):
+                    workers.append(child)
+    return workers
 
 
 def kill_worker(folder: Path, draw: random.Random) -> None:
@@ -87,7 +93,8 @@ def kill_worker(folder: Path, draw: random.Random) -> None:
     wait_until((folder / TABLE).exists)
     time.sleep(draw.uniform(0.0, LATEST))
     if process.poll() is None and (workers := workers_of(process)):
-        draw.choice(workers).kill()
+        with suppress(psutil.NoSuchProcess):
+            draw.choice(workers).kill()
     assert "Traceback" not in finish(process)
 
 
