@@ -21,7 +21,6 @@ from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
-from humanwalk.view.plots import write_plots
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
 
@@ -107,6 +106,9 @@ def illustrate(run: Run, replay: Any, *, plots: bool, console: Console) -> None:
         if replay is not None:
             write_replay(run, replay)
         if plots and run.summary["physics"]:
+            # Importing matplotlib takes half a second, which every walk would wait before its start.
+            from humanwalk.view.plots import write_plots
+
             write_plots(run)
     console.print(summary_table(run.summary))
     if run.summary["fall"] is not None:
