@@ -173,7 +173,7 @@ def person(sex: Sex, segments: Regions) -> Skeleton:
 def hip_height(segments: Regions, side: Side) -> float:
     """Return the height of a hip joint above its sole in standing [m]."""
     thigh, shank = (segments[f"{side.lower()}_{name}"].length for name in ("thigh", "shank"))
-    # The ankle's height is a share of the stature, of which the rest is measured.
+    # The ankle height h is a share a of the stature: h = a (rest + legs + h).
     rest = math.fsum(segments[name].length for name in ("head", *TRUNK))
     legs = max(math.fsum(segments[f"{s.lower()}_{name}"].length for name in ("thigh", "shank")) for s in SIDES)
     return thigh + shank + ANKLE_HEIGHT * (rest + legs) / (1.0 - ANKLE_HEIGHT)
