@@ -43,8 +43,12 @@ class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
     com_weight: float = quantity(300.0, "", 0.0, 1e5)
-    """Weight of the horizontal acceleration of the center of mass, which follows from the zero-moment point alone.
+    """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
+
+    pressure_weight: float = quantity(0.0, "", 0.0, 1e5)
+    """Weight of the center of pressure at the planned zero-moment point, per squared acceleration of the center of mass
+    that would move it there. With `com_weight` alone the angular momentum of the swinging leg moves the pressure."""
 
     com_height: TaskGains = critical(100.0, 50.0)
     """Height of the center of mass."""

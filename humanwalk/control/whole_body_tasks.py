@@ -13,7 +13,7 @@ from humanwalk.control.body_dynamics import Dynamics, FrameMotion
 from humanwalk.control.whole_body_contacts import SolesOnGround
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
 from humanwalk.numerics import Array
-from humanwalk.numerics.rotation import rotation_vector, yaw_pitch
+from humanwalk.numerics.rotation import cross_matrix, rotation_vector, yaw_pitch
 from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 
 REST = np.zeros(3)
@@ -58,6 +58,7 @@ def tasks(
     """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,)."""
     found = [
         *_center_of_mass(body, reference, p),
+        _center_of_pressure(body, reference, p),
         _rotation(body.frame(PELVIS), yaw_pitch(reference.pelvis_yaw, 0.0), p.pelvis),
         _rotation(body.frame(CHEST), yaw_pitch(reference.chest_yaw, 0.0), p.chest),
     ]
@@ -65,19 +66,33 @@ def tasks(
         leg, foot = LEGS[side], reference.foot(side)
         state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side))
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
-    J, acceleration, weight = zip(*found, strict=True)
+    J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
     return np.concatenate(J), np.concatenate(acceleration), np.repeat(weight, [len(a) for a in acceleration])
 
 
 def _center_of_mass(body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Iterator[Task]:
-    """Horizontal acceleration from the zero-moment point, vertical acceleration from the reference height."""
+    """Horizontal acceleration from the centroidal moment pivot, vertical acceleration from the reference height."""
     com, gains = body.com, p.com_height
     x, y, z = com.position.tolist()
     height, rate, lift = reference.com_height
-    level = com_acceleration(complex(x, y), reference.zmp, z - reference.ground_height, lift)
+    level = com_acceleration(complex(x, y), reference.pivot, z - reference.ground_height, lift)
     up = lift + gains.stiffness * (height - z) + gains.damping * (rate - com.velocity[2])
     yield Task(com.J[:2], np.array((level.real, level.imag)) - com.bias[:2], p.com_weight)
     yield Task(com.J[2:], up - com.bias[2:], gains.weight)
+
+
+def _center_of_pressure(body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Task:
+    """No moment of the contact forces about the level axes through the zero-moment point Z.
+
+    With f and tau the force and the moment about the pelvis P that the equations of motion need at the floating base,
+    that moment is tau + p_ZP x f. Per m h it is an acceleration: that of a center of mass at the height h without
+    angular momentum about it.
+    """
+    zmp = np.array((reference.zmp.real, reference.zmp.imag, reference.ground_height))
+    p_ZP = cross_matrix(body.frame(PELVIS).p_WB - zmp)
+    scale = 1.0 / (body.M[3, 3] * (body.com.position[2] - reference.ground_height))
+    J, bias = (scale * (part[:3] + p_ZP @ part[3:6])[:2] for part in (body.M, body.h))
+    return Task(J, -bias, p.pressure_weight)
 
 
 def _rotation(

@@ -24,6 +24,10 @@ class BaseOfSupport:
     roll: float = quantity(0.122, "s", 0.0, 0.3)
     """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
+    pivot: float = quantity(0.0, "s", 0.0, 0.2)
+    """Distance of the centroidal moment pivot behind the nominal zero-moment point when a foot leaves the ground, and
+    ahead of it at touchdown, per speed: the rate of the angular momentum of the swinging leg, over the weight."""
+
     back: float = quantity(0.04, "m", 0.0, 0.1)
     """Limit behind the ankle."""
 

@@ -25,6 +25,9 @@ class FootRockers:
     pitch: float = quantity(1.0, "rad", 0.0, 1.2)
     """Pitch of the foot at toe-off at 1 m/s and faster; proportional to the speed below."""
 
+    late_rise: float = quantity(0.0, "", 0.0, 1.0)
+    """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
+
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)
     """Forward speed below which the feet leave the ground flat."""
 
@@ -50,6 +53,9 @@ class FootRockers:
             speed: Forward speed [m/s].
         """
         final = self.pitch * clip(speed / FULL_PITCH_SPEED, 0.0, 1.0)
-        s = min(since / duration, 1.0)
-        pitch = ScalarMotion(final * s * s, 2.0 * final * s / duration, 2.0 * final / duration**2)
+        s, late = min(since / duration, 1.0), self.late_rise
+        value = final * s * s * (1.0 - late + late * s)
+        rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration
+        acceleration = final * (2.0 * (1.0 - late) + 6.0 * late * s) / duration**2
+        pitch = ScalarMotion(value, rate, acceleration)
         return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=pitch[:2])

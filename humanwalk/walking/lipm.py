@@ -4,6 +4,10 @@ A point of the level plane is a complex number x + iy [m]; multiplication by exp
 center of mass c at a constant height h above the zero-moment point z, c'' = w^2 (c - z), w = sqrt(g / h). The DCM
 xi = c + c'/w diverges from the zero-moment point, xi' = w (xi - z), and the center of mass converges to the DCM
 (Hof 2008; Takenaka et al. 2009; Englsberger et al. 2015).
+
+A body with angular momentum L about its center of mass obeys the same equations with the centroidal moment pivot in the
+place of z: the point where a line through the center of mass along the ground force meets the ground (Popovic, Goswami,
+Herr 2005). For walking along x it is ahead of the zero-moment point by L_y' over the vertical force.
 """
 
 import cmath
@@ -99,13 +103,17 @@ class PeriodicGait(NamedTuple):
     """A walk that repeats itself every two steps, rotated by twice `turn`.
 
     A step begins at touchdown. In double support the zero-moment point moves from the old to the new stance foot, in
-    single support along the stance foot. All points are relative to the stance foot of the step, x along its heading.
+    single support along the stance foot. The centroidal moment pivot is ahead of it by -`pivot` at the beginning and
+    +`pivot` at the end of single support, linearly between: while a leg swings, its angular momentum first falls and
+    then rises, in double support the legs exchange it. All points are relative to the nominal zero-moment point at the
+    beginning of single support, x along the heading of the stance foot.
 
     Attributes:
         displacement: From each stance foot to the next foothold [m]; the two differ in a sideways walk.
         turn: Change of the heading from step to step [rad].
         roll: Displacement of the zero-moment point in single support [m].
         double_support, single_support: Durations [s].
+        pivot: Greatest distance of the centroidal moment pivot from the zero-moment point [m].
     """
 
     displacement: PerStance
@@ -113,11 +121,20 @@ class PeriodicGait(NamedTuple):
     roll: complex
     double_support: float
     single_support: float
+    pivot: complex = 0.0
+
+    @property
+    def pivot_end(self) -> complex:
+        """The centroidal moment pivot at the end of single support; at its beginning it is at -`pivot` [m]."""
+        return self.roll + self.pivot
 
     def segments(self, stance: Side) -> tuple[ZmpSegment, ZmpSegment]:
-        """The zero-moment point in double and single support of one step."""
-        old_end = (self.roll - self.displacement.on(other_side(stance))) * cmath.exp(-1j * self.turn)
-        return (ZmpSegment(old_end, 0.0, self.double_support), ZmpSegment(0.0, self.roll, self.single_support))
+        """The centroidal moment pivot in double and single support of one step."""
+        old_end = (self.pivot_end - self.displacement.on(other_side(stance))) * cmath.exp(-1j * self.turn)
+        return (
+            ZmpSegment(old_end, -self.pivot, self.double_support),
+            ZmpSegment(-self.pivot, self.pivot_end, self.single_support),
+        )
 
     def end_offsets(self, frequency: float) -> PerStance:
         """DCM at the end of each step, for which the walk is periodic.

@@ -86,7 +86,7 @@ class PhaseTransitions:
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
         toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
         sole = self._footholds.sole
-        profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing)
+        profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing, sole)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
         return state._replace(
             phase=Phase.SINGLE_SUPPORT,

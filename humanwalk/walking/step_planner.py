@@ -29,13 +29,14 @@ from humanwalk.walking.support import SupportMotion, support_motion
 from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
-from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
+from humanwalk.walking.zmp_reference import desired_gait, pivot_lead, remaining_pivot
 
 
 class Balance(NamedTuple):
-    """Zero-moment point, measured DCM and nominal DCM [m]."""
+    """Zero-moment point, centroidal moment pivot, measured DCM and nominal DCM [m]."""
 
     zmp: complex
+    pivot: complex
     dcm: complex
     dcm_reference: complex
 
@@ -112,7 +113,8 @@ class StepPlanner:
             s = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
             dcm_reference, dcm_rate = dcm_reference + s.value * change, s.rate * change
         zmp = dcm_reference - dcm_rate / self.frequency + (1.0 + p.dcm_gain) * (dcm - dcm_reference)
-        balance = Balance(self._clamp(state, zmp), dcm, dcm_reference)
+        zmp = self._clamp(state, zmp)
+        balance = Balance(zmp, zmp, dcm, dcm_reference)
         feet: dict[Side, FootReference] = {
             side: FootReference(FootTask.FLAT, 1.0, state.heading, state.foot(side).R_WS) for side in SIDES
         }
@@ -132,13 +134,15 @@ class StepPlanner:
         # Nominal DCM: backward from its value at the end of the step, that of the periodic gait on the next footholds.
         end = state.world(p.support.center + gait.end_offsets(self.frequency).on(state.stance))
         end += dcm_shift(preview.moves, gait, self.frequency)
-        segments = remaining_zmp(state, gait, p)
+        segments = remaining_pivot(state, gait, p)
         dcm_reference = backward(segments, end, self.frequency)
 
-        # Zero-moment point: feedback of the error of the DCM, within the base of support.
+        # Pivot: feedback of the error of the DCM, with the zero-moment point within the base of support.
         gain = p.double_support_gain if state.phase is Phase.DOUBLE_SUPPORT else p.dcm_gain
         heel_is_up = state.swing is not None and stance_rollover_speed(state, state.swing, command, p) is not None
-        zmp = self._clamp(state, segments[0].start + (1.0 + gain) * (dcm - dcm_reference), heel_is_up)
+        pivot, lead = segments[0].start + (1.0 + gain) * (dcm - dcm_reference), pivot_lead(state, gait)
+        zmp = self._clamp(state, pivot - lead, heel_is_up)
+        pivot = zmp + lead
 
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
@@ -165,7 +169,7 @@ class StepPlanner:
             reachable, excess = placement.within_reach(desired, state.stance, foot)
             phase_rate = timing.phase_rate(excess, timing.phase_rate_limit)
             remaining = (timing.step - state.elapsed) / phase_rate
-            com = com_after(remaining, body.com, dcm, zmp, self.frequency)
+            com = com_after(remaining, body.com, dcm, pivot, self.frequency)
             goal = state.world(placement.near_com(reachable, state.local(com)))
             growth = math.expm1(self.frequency * (timing.step - state.elapsed))
             expected = goal - sensitivity * p.support.correctable(error, growth) * state.direction
@@ -178,7 +182,7 @@ class StepPlanner:
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
         next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)
-        balance = Balance(zmp, dcm, dcm_reference)
+        balance = Balance(zmp, pivot, dcm, dcm_reference)
         return next_state, self._reference(state, body, balance, com_height, support, feet, foothold.position)
 
     def _clamp(self, state: PlannerState, zmp: complex, heel_is_up: bool = False) -> complex:
@@ -243,6 +247,7 @@ class StepPlanner:
             phase=state.phase,
             phase_time=state.elapsed,
             zmp=balance.zmp,
+            pivot=balance.pivot,
             dcm=balance.dcm,
             dcm_reference=balance.dcm_reference,
             com_height=com_height,

@@ -44,6 +44,10 @@ class SwingParameters:
     toe_up: float = quantity(0.26, "rad s/m", 0.0, 0.6)
     """Pitch at touchdown per forward speed, toes up: 21 degrees at 1.4 m/s."""
 
+    heel_height: float = quantity(0.0, "", 0.0, 1.0)
+    """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the
+    heel of a pitched foot meets the ground before the end of the swing, while it is fast."""
+
     landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
@@ -87,6 +91,7 @@ class SwingProfile:
         toe_up: float,
         duration: float,
         parameters: SwingParameters,
+        sole: SoleExtent,
     ) -> "SwingProfile":
         """The profile that continues the motion of a foot at toe-off.
 
@@ -96,10 +101,12 @@ class SwingProfile:
             toe_up: Pitch at touchdown, toes up positive [rad].
             duration: Duration of the swing [s].
             parameters: Shape of the swing.
+            sole: Extent of the sole.
         """
+        landing = flat_height - LANDING_DEPTH + parameters.heel_height * sole.back * math.sin(toe_up)
         apex = max(foot.height + parameters.lift, flat_height + parameters.clearance)
         inner = flat_height + np.array(HEIGHT_SHAPE) * (apex - flat_height)
-        heights = np.array((foot.height, *inner, flat_height - LANDING_DEPTH))
+        heights = np.array((foot.height, *inner, landing))
         pitches = foot.pitch + np.array(PITCH_SHAPE) * (-toe_up - foot.pitch)
         points = np.column_stack((heights, pitches))
         tangents = hermite_tangents(points)

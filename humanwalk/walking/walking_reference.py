@@ -166,6 +166,7 @@ class WalkingReference:
     Attributes:
         phase, phase_time: Phase of the walk and the time since it began; in single support, since touchdown [s].
         zmp: Zero-moment point [m].
+        pivot: Centroidal moment pivot, which determines the acceleration of the center of mass [m].
         dcm, dcm_reference: Measured and nominal divergent component of motion [m], for records.
         com_height: Center of mass in W [m].
         ground_height: Ground under the zero-moment point in W [m].
@@ -180,6 +181,7 @@ class WalkingReference:
     phase: Phase
     phase_time: float
     zmp: complex
+    pivot: complex
     dcm: complex
     dcm_reference: complex
     com_height: ScalarMotion
@@ -202,12 +204,12 @@ class WalkingReference:
         return self.right if side == "Right" else self.left
 
 
-def com_acceleration(com: complex, zmp: complex, com_height: float, vertical_acceleration: float) -> complex:
-    """Horizontal acceleration of the center of mass that puts the zero-moment point at `zmp` [m/s2].
+def com_acceleration(com: complex, pivot: complex, com_height: float, vertical_acceleration: float) -> complex:
+    """Horizontal acceleration of the center of mass that puts the centroidal moment pivot at `pivot` [m/s2].
 
     Args:
-        com, zmp: Points of the level plane [m].
-        com_height: Height of the center of mass above the zero-moment point [m].
+        com, pivot: Points of the level plane [m].
+        com_height: Height of the center of mass above the pivot [m].
         vertical_acceleration: Acceleration of the center of mass [m/s2].
     """
-    return (GRAVITY + vertical_acceleration) / com_height * (com - zmp)
+    return (GRAVITY + vertical_acceleration) / com_height * (com - pivot)

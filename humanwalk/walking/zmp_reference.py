@@ -1,4 +1,4 @@
-"""The desired periodic gait, and the nominal zero-moment point from now to the end of the step."""
+"""The desired periodic gait, and the nominal centroidal moment pivot from now to the end of the step."""
 
 import cmath
 
@@ -25,19 +25,33 @@ def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerP
         roll=parameters.support.roll * complex(max(command.forward, 0.0), command.sideways),
         double_support=timing.double_support,
         single_support=timing.single_support,
+        pivot=parameters.support.pivot * max(command.forward, 0.0),
     )
 
 
-def remaining_zmp(state: PlannerState, gait: PeriodicGait, parameters: StepPlannerParameters) -> tuple[ZmpSegment, ...]:
-    """The nominal zero-moment point to the end of the step, over the feet as they stand [m]."""
+def remaining_pivot(
+    state: PlannerState, gait: PeriodicGait, parameters: StepPlannerParameters
+) -> tuple[ZmpSegment, ...]:
+    """The nominal centroidal moment pivot to the end of the step, over the feet as they stand [m]."""
     timing, support = state.timing, parameters.support
     stance = support.center_of(state.stance_foot.position, state.heading)
-    single = ZmpSegment(stance, stance + gait.roll * state.direction, timing.single_support)
+    start, end = stance - gait.pivot * state.direction, stance + gait.pivot_end * state.direction
+    single = ZmpSegment(start, end, timing.single_support)
     if state.phase is Phase.SINGLE_SUPPORT:
         return (single.remainder(state.elapsed - timing.double_support),)
     old = support.center_of(state.old_foot.position, state.old_heading)
-    old_end = old + gait.roll * cmath.exp(1j * state.old_heading)
-    return (ZmpSegment(old_end, stance, timing.double_support).remainder(state.elapsed), single)
+    old_end = old + gait.pivot_end * cmath.exp(1j * state.old_heading)
+    return (ZmpSegment(old_end, start, timing.double_support).remainder(state.elapsed), single)
+
+
+def pivot_lead(state: PlannerState, gait: PeriodicGait) -> complex:
+    """Centroidal moment pivot relative to the zero-moment point, now and in W [m]."""
+    timing, pivot = state.timing, gait.pivot * state.direction
+    exchange = ZmpSegment(pivot, -pivot, timing.double_support)
+    swing = ZmpSegment(-pivot, pivot, timing.single_support)
+    if state.phase is Phase.SINGLE_SUPPORT:
+        return swing.at(state.elapsed - timing.double_support)
+    return exchange.at(state.elapsed)
 
 
 def remaining_ground(state: PlannerState) -> tuple[ZmpSegment, ...]:

@@ -59,6 +59,7 @@ def reference_for(
         phase=Phase.STAND,
         phase_time=0.0,
         zmp=com if zmp is None else zmp,
+        pivot=com if zmp is None else zmp,
         dcm=com,
         dcm_reference=com,
         com_height=(float(body.com.position[2]), 0.0, 0.0),  # type: ignore[arg-type]
@@ -115,6 +116,36 @@ def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(
     solution = qp.solve(body, reference_for(body, zmp=zmp), rest(qp))
     acceleration = body.com.J @ solution.acceleration + body.com.bias
     assert acceleration[0] == pytest.approx(-9.81 / body.com.position[2] * 0.01, abs=0.03)
+
+
+def center_of_pressure(dynamics: BodyDynamics, body: Dynamics, forces: Array, skeleton: Skeleton) -> Array:
+    """Of the contact forces, on level ground [m], shape (2,)."""
+    spheres = contact_spheres(skeleton)
+    lowest = [np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius)) for sphere in spheres]
+    points = np.array([body.frame(s.body).point(p).position for s, p in zip(spheres, lowest, strict=True)])
+    pressure: Array = forces[:, 2] @ points[:, :2] / forces[:, 2].sum()
+    return pressure
+
+
+def test_the_center_of_pressure_follows_its_reference_while_angular_momentum_changes(
+    dynamics: BodyDynamics, skeleton: Skeleton
+) -> None:
+    """With its weight, not without: the trunk, which leans forward on the hips, is straightened."""
+    body, lean, joints = body_at(dynamics), 0.1, dynamics.joints
+    q = body.q.copy()
+    q[:4] = np.cos(0.5 * lean), 0.0, np.sin(0.5 * lean), 0.0
+    for leg in LEGS.values():
+        q[joints.q[joints.names.index(leg.hip_flexion)]] += lean
+    body = dynamics.at(np.concatenate((q, body.v)))
+    reference = reference_for(body, zmp=complex(*body.com.position[:2]))
+    errors = []
+    for weight in (0.0, 1e4):
+        program = WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, pressure_weight=weight))
+        solution = program.solve(body, reference, rest(program))
+        pressure = center_of_pressure(dynamics, body, solution.forces, skeleton)
+        errors.append(abs(pressure[0] - reference.zmp.real))
+    assert errors[1] < 0.2 * errors[0]
+    assert errors[1] < 0.01
 
 
 @pytest.mark.parametrize("zmp", [0.1 + 0j, -0.3 + 0j, 0.5 + 0.5j, 1.0 - 1.0j])

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
@@ -18,6 +19,7 @@ PARAMETERS = StepPlannerParameters()
 TIMING, ROCKERS = PARAMETERS.timing, PARAMETERS.rockers
 ANKLE = 0.07
 WALK = Command(1.0)
+SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 OLD, STANCE, NEXT = Foothold(-0.1j, 0.0), Foothold(0.5 + 0.1j, 0.0), Foothold(1.0 - 0.1j, 0.0)
 
 
@@ -29,7 +31,7 @@ def state_at(elapsed: float, steps: int = 1) -> PlannerState:
 
 def swing_to(foothold: Foothold, toes: float = 0.5) -> Swing:
     foot = FootState(OLD.position, 0j, ANKLE + 0.05, height_rate=0.2, yaw=0.1, pitch=0.9, pitch_rate=3.0, force=0.0)
-    profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing)
+    profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing, SOLE)
     return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes, rise=foothold.ground)
 
 

@@ -12,8 +12,8 @@ ROCKERS = FootRockers()
 DOUBLE_SUPPORT = 0.1
 
 
-def over_ball(since: float, speed: float = 1.2) -> FootReference:
-    return ROCKERS.over_ball(since, ROCKERS.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
+def over_ball(since: float, speed: float = 1.2, rockers: FootRockers = ROCKERS) -> FootReference:
+    return rockers.over_ball(since, rockers.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
 
 
 def test_heels_rise_above_a_minimum_forward_speed() -> None:
@@ -28,10 +28,16 @@ def test_the_heel_rises_from_flat_to_its_pitch() -> None:
     assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6).pitch[0] == pytest.approx(0.6 * ROCKERS.pitch)
 
 
-@given(st.floats(0.01, 0.19))
-def test_rates_are_derivatives(since: float) -> None:
-    h = 1e-5
-    before, here, after = (over_ball(since + d).pitch for d in (-h, 0.0, h))
+def test_a_heel_that_rises_late_has_the_same_pitch_at_toe_off() -> None:
+    late, duration = FootRockers(late_rise=0.7), ROCKERS.ball + DOUBLE_SUPPORT
+    assert over_ball(0.5 * duration, rockers=late).pitch[0] < over_ball(0.5 * duration).pitch[0]
+    assert over_ball(duration, rockers=late).pitch[0] == pytest.approx(ROCKERS.pitch)
+
+
+@given(st.floats(0.01, 0.19), st.floats(0.0, 1.0))
+def test_rates_are_derivatives(since: float, late_rise: float) -> None:
+    h, rockers = 1e-5, FootRockers(late_rise=late_rise)
+    before, here, after = (over_ball(since + d, rockers=rockers).pitch for d in (-h, 0.0, h))
     assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], rel=1e-4)
     assert (after[1] - before[1]) / (2 * h) == pytest.approx(here[2], rel=1e-4)
 

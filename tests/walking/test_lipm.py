@@ -88,6 +88,7 @@ gaits = st.builds(
     roll=st.builds(complex, st.floats(0.0, 0.2)),
     double_support=st.floats(0.05, 0.2),
     single_support=st.floats(0.2, 0.6),
+    pivot=st.floats(0.0, 0.1),
 )
 
 
@@ -103,12 +104,22 @@ def test_the_periodic_walk_repeats_itself(gait: PeriodicGait, frequency: float) 
 
 @given(gaits, frequencies)
 def test_each_step_begins_where_the_one_before_ended(gait: PeriodicGait, frequency: float) -> None:
-    """The zero-moment point does not jump at touchdown."""
+    """The pivot does not jump at touchdown."""
     for stance in SIDES:
         end_of_old = gait.segments(stance)[-1].end
         start_of_new = gait.segments(other_side(stance))[0].start * cmath.exp(1j * gait.turn)
         start_of_new += gait.displacement.on(stance)
         assert start_of_new == pytest.approx(end_of_old, abs=1e-12)
+
+
+@given(gaits)
+def test_the_pivot_is_behind_the_zero_moment_point_when_a_swing_begins_and_ahead_when_it_ends(
+    gait: PeriodicGait,
+) -> None:
+    """By the same distance, so that the angular momentum of a step is that of the one before."""
+    swing = gait.segments("Left")[1]
+    assert swing.start == pytest.approx(-gait.pivot)
+    assert swing.end == pytest.approx(gait.roll + gait.pivot)
 
 
 @given(st.floats(0.1, 0.4), frequencies)

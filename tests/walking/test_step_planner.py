@@ -51,8 +51,10 @@ class Raised(Plane):
         return super().height(xy) + self.base
 
 
-def planner(terrain: Any = LEVEL, period: float = PERIOD) -> StepPlanner:
-    return StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", period, SOLE, terrain)
+def planner(
+    terrain: Any = LEVEL, period: float = PERIOD, parameters: StepPlannerParameters = PARAMETERS
+) -> StepPlanner:
+    return StepPlanner(parameters, 0.98, ANKLE, LEG, "Right", period, SOLE, terrain)
 
 
 def foot(position: Any, force: float = 350.0, **changes: Any) -> FootState:
@@ -77,7 +79,7 @@ def pendulum_walk(
         commanded = command(time)
         state, reference = plan.update(state, body, commanded)
         yield time, state, reference, body
-        velocity = body.com_velocity + PERIOD * plan.frequency**2 * (body.com - reference.zmp)
+        velocity = body.com_velocity + PERIOD * plan.frequency**2 * (body.com - reference.pivot)
         if push is not None and abs(time - push[0]) < 0.5 * PERIOD:
             velocity += push[1]
         feet = {}
@@ -206,6 +208,19 @@ def test_the_zero_moment_point_stays_over_the_stance_foot() -> None:
             offset = reference.zmp - state.stance_foot.position
             assert -support.back - 1e-9 <= offset.real <= support.front + 1e-9
             assert abs(offset.imag) <= support.half_width + 1e-9
+
+
+def test_a_pendulum_with_angular_momentum_walks_as_commanded_and_its_pressure_rolls_forward() -> None:
+    support = replace(PARAMETERS.support, pivot=0.05)
+    walk = pendulum_walk(planner(parameters=replace(PARAMETERS, support=support)), walk_at(1.0), 12.0)
+    steady = [(t, state, reference, body) for t, state, reference, body in walk if t > 7.8]
+    (first, *_, start), (last, *_, end) = steady[0], steady[-1]
+    assert (end.com - start.com).real / (last - first) == pytest.approx(1.0, abs=0.03)
+    single = [(s, r) for _, s, r, _ in steady if s.phase is Phase.SINGLE_SUPPORT]
+    ahead = [(s.stance, s.elapsed, (r.zmp - s.stance_foot.position).real) for s, r in single]
+    for (stance, before, x), (later, after, y) in pairwise(ahead):
+        if stance == later and after > before:
+            assert y >= x - 1e-3
 
 
 def test_step_durations_do_not_depend_on_the_control_period() -> None:

@@ -1,13 +1,17 @@
 """The swinging foot continues its motion at toe-off, clears the ground, and lands as desired."""
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.contact import SoleExtent
 from humanwalk.walking.swing_foot import LANDING_DEPTH, MAX_PITCH_SPEED, SwingParameters, SwingProfile
 from humanwalk.walking.walking_reference import FootState
 
 DURATION = 0.42
+SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 
 
 def toe_off(height: float = 0.12, height_rate: float = 0.3, pitch: float = 0.6, pitch_rate: float = -2.0) -> FootState:
@@ -40,7 +44,7 @@ def test_it_lands_on_the_foothold_slower_than_the_walk_and_decelerating(foothold
 
 @pytest.fixture
 def profile() -> SwingProfile:
-    return SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters())
+    return SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters(), SOLE)
 
 
 def test_it_continues_the_motion_at_toe_off(profile: SwingProfile) -> None:
@@ -56,6 +60,12 @@ def test_it_lands_on_the_heel_with_the_landing_speed(profile: SwingProfile) -> N
     assert height.rate / DURATION == pytest.approx(-parameters.landing_sink_rate)
 
 
+def test_a_foot_that_lands_on_its_heel_is_higher_by_what_the_heel_is_lower_than_the_ankle() -> None:
+    profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters(heel_height=1.0), SOLE)
+    assert profile.at(1.0)[0].value == pytest.approx(0.068 - LANDING_DEPTH + SOLE.back * math.sin(0.25))
+    assert profile.lowest(1.0, 0.068, SOLE) == pytest.approx(-LANDING_DEPTH)
+
+
 def test_it_clears_the_ground_in_between(profile: SwingProfile) -> None:
     assert all(profile.at(s / 100)[0].value > 0.068 for s in range(95))
 
@@ -63,14 +73,16 @@ def test_it_clears_the_ground_in_between(profile: SwingProfile) -> None:
 @given(st.floats(0.0, 0.1))
 def test_a_foot_that_leaves_the_ground_flat_has_clearance(raised: float) -> None:
     parameters, ground = SwingParameters(), 0.068
-    profile = SwingProfile.from_toe_off(toe_off(ground + raised, 0.0, 0.0, 0.0), ground, 0.25, DURATION, parameters)
+    profile = SwingProfile.from_toe_off(
+        toe_off(ground + raised, 0.0, 0.0, 0.0), ground, 0.25, DURATION, parameters, SOLE
+    )
     highest = max(profile.at(s / 100)[0].value for s in range(100)) - ground
     assert highest >= max(parameters.clearance, raised + parameters.lift) - 1e-9
 
 
 @given(st.integers(0, 3), st.floats(0.01, 0.99))
 def test_rates_are_derivatives_within_each_quarter(quarter: int, fraction: float) -> None:
-    profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters())
+    profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters(), SOLE)
     progress, h = 0.25 * (quarter + fraction), 1e-6
     for before, here, after in zip(*(profile.at(progress + d) for d in (-h, 0.0, h)), strict=True):
         assert (after.value - before.value) / (2.0 * h) == pytest.approx(here.rate, abs=1e-4)

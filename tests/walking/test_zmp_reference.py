@@ -1,6 +1,7 @@
 """The desired gait has the commanded velocity and width; the nominal zero-moment point goes from foot to foot."""
 
 import cmath
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +17,7 @@ from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.walking_reference import Phase
-from humanwalk.walking.zmp_reference import desired_gait, remaining_zmp
+from humanwalk.walking.zmp_reference import desired_gait, pivot_lead, remaining_pivot
 
 PARAMETERS = StepPlannerParameters()
 TIMING, PLACEMENT = PARAMETERS.timing, PARAMETERS.placement
@@ -76,9 +77,42 @@ def test_the_remaining_segments_last_to_the_end_of_the_step_and_are_connected(
     elapsed = fraction * TIMING.step
     phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
     state = state_at(elapsed, phase, stance, heading)
-    segments = remaining_zmp(state, desired_gait(state, Command(1.0), PARAMETERS), PARAMETERS)
+    segments = remaining_pivot(state, desired_gait(state, Command(1.0), PARAMETERS), PARAMETERS)
     assert sum(segment.duration for segment in segments) == pytest.approx(TIMING.step - elapsed)
     for first, second in pairwise(segments):
         assert first.end == pytest.approx(second.start)
     end = PARAMETERS.support.center + PARAMETERS.support.roll * 1.0
     assert state.local(segments[-1].end) == pytest.approx(end, abs=1e-9)
+
+
+SWINGING = replace(PARAMETERS, support=replace(PARAMETERS.support, pivot=0.05))
+"""Parameters with angular momentum of the swinging leg."""
+
+
+@given(st.sampled_from(SIDES), st.floats(0.0, 0.99), st.floats(-3.0, 3.0))
+def test_the_zero_moment_point_does_not_depend_on_the_angular_momentum(
+    stance: Side, fraction: float, heading: float
+) -> None:
+    """The pivot less its lead is the zero-moment point, which rolls from foot to foot."""
+    elapsed = fraction * TIMING.step
+    phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
+    state = state_at(elapsed, phase, stance, heading)
+    plain, swinging = (desired_gait(state, Command(1.0), parameters) for parameters in (PARAMETERS, SWINGING))
+    pivot = remaining_pivot(state, swinging, SWINGING)[0].start
+    zmp = remaining_pivot(state, plain, PARAMETERS)[0].start
+    assert pivot - pivot_lead(state, swinging) == pytest.approx(zmp, abs=1e-9)
+    assert pivot_lead(state, plain) == 0.0
+
+
+def test_the_angular_momentum_of_a_step_is_that_of_the_one_before() -> None:
+    """The lead is the rate of the angular momentum: it has no mean."""
+    gait = desired_gait(state_at(), Command(1.2), SWINGING)
+    times = (TIMING.step * (k + 0.5) / 1000 for k in range(1000))
+    phases = ((t, Phase.DOUBLE_SUPPORT if t < TIMING.double_support else Phase.SINGLE_SUPPORT) for t in times)
+    leads = [pivot_lead(state_at(t, phase), gait).real for t, phase in phases]
+    assert sum(leads) / len(leads) == pytest.approx(0.0, abs=1e-4)
+    assert max(leads) == pytest.approx(0.06, rel=0.01)
+
+
+def test_walking_backward_the_pivot_stays_at_the_zero_moment_point() -> None:
+    assert desired_gait(state_at(), Command(-0.5), SWINGING).pivot == 0.0
