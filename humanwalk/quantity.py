@@ -7,8 +7,9 @@ A parameter of a scenario is a dataclass field made by `quantity`. `check` visit
 import dataclasses
 import difflib
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, cast
 
 GRAVITY = 9.81
 """Acceleration of gravity, Drake's default [m/s2]."""
@@ -24,6 +25,11 @@ UNIT_MISTAKES = {
 
 MESSAGE_LENGTH = 4000
 """Longest error message [characters]; the longest list of allowed fields fits."""
+
+
+Metadata = Mapping[str, Any]
+NONE: Metadata = MappingProxyType({})
+"""Metadata of a field that has none."""
 
 
 class ParameterError(ValueError):
@@ -96,17 +102,31 @@ def file_paths(parameters: Any) -> dict[str, str]:
 
 def replace_file_paths[T](parameters: T, paths: Mapping[str, str]) -> T:
     """A tree of dataclasses with other paths of files, by dotted field name as in `file_paths`."""
-    replaced: T = _with_paths(parameters, paths, "", {})
-    return replaced
+    return changed(parameters, lambda name, value, of: paths.get(name, value) if of.get("path") else value)
 
 
-def _with_paths(value: Any, paths: Mapping[str, str], path: str, metadata: Mapping[str, Any]) -> Any:
-    if metadata.get("path"):
-        return paths.get(path, value)
-    parts = [(key, _with_paths(item, paths, name, of)) for key, item, name, of in _parts(value, path, metadata)]
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return dataclasses.replace(value, **dict(parts))
-    return tuple(item for _, item in parts) if isinstance(value, tuple) and parts else value
+def changed[T](
+    parameters: T, change: Callable[[str, Any, Metadata], Any], path: str = "", metadata: Metadata = NONE
+) -> T:
+    """A tree of dataclasses, and of tuples and mappings of them, in which a function replaces each field's value.
+
+    Args:
+        parameters: The tree.
+        change: Returns the new value from dotted name, value and metadata of a field that holds no dataclass.
+        path: Dotted name of the tree.
+        metadata: Of the field that holds the tree.
+    """
+    parts = {key: changed(item, change, name, of) for key, item, name, of in _parts(parameters, path, metadata)}
+    new: Any
+    if not parts:
+        new = change(path, parameters, metadata)
+    elif isinstance(parameters, Mapping):
+        new = {**parameters, **parts}
+    elif isinstance(parameters, tuple):
+        new = tuple(parts.get(i, item) for i, item in enumerate(parameters))
+    else:
+        new = dataclasses.replace(cast(Any, parameters), **parts)
+    return cast(T, new)
 
 
 def tag_of(choices: Mapping[str, type[Any]], value: Any) -> str:

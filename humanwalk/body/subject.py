@@ -17,6 +17,7 @@ from humanwalk.body.measured import completed, read_measurements
 from humanwalk.body.regions import regions
 from humanwalk.body.sdf import Look
 from humanwalk.body.skeleton import MASS_RANGE_KG, REFERENCE_MASS, REFERENCE_STATURE, STATURE_RANGE_M, Skeleton
+from humanwalk.body_units import BodyScale
 from humanwalk.quantity import ParameterError, check, choice_list, file_path, quantity, tag_of
 
 BODY_MASS_INDEX = (10.0, 80.0)
@@ -105,6 +106,11 @@ class Subject:
     def known_mass(self) -> float:
         """Mass of body and known loads [kg]."""
         return self.mass + math.fsum(load.total for load in self.loads if load.known)
+
+    @property
+    def scale(self) -> BodyScale:
+        """Factors from the reference body to this one with known loads; a leg is as long as its hip is high."""
+        return BodyScale(self.body.hip_height / human().hip_height, self.known_mass / REFERENCE_MASS)
 
 
 def _thesis_body(subject: Subject) -> Skeleton:

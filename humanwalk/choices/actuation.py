@@ -8,6 +8,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 
 from humanwalk.body.joint_map import JointMap, base_first_mass_matrix
+from humanwalk.body_units import scaled
 from humanwalk.choices.world import World
 from humanwalk.control.adaptive_feedforward import AdaptationParameters, require_passive
 from humanwalk.control.integral_action import require_stable_integral
@@ -90,6 +91,8 @@ class PdActuation:
 class PidActuation(PdActuation):
     """A PID controller for every joint: the PD law and an integral of the angle error that stops at the effort limits.
 
+    The time is for the reference body and scales with the subject.
+
     Joints without stiffness have no integral action either: those that the balanced controller moves by torque.
     """
 
@@ -98,28 +101,31 @@ class PidActuation(PdActuation):
     Longer than a gait cycle (0.6 s in the thesis' walk): shorter times amplify the periodic error."""
 
     def add_correction(self, world: World) -> None:
-        require_stable_integral(world.plant, world.kp, world.kd, self.law, "integral_time", self.integral_time)
-        _add_correction(world, "integral_action", IntegralAction(world.plant, world.kp / self.integral_time))
+        time = scaled(self, world.subject.scale).integral_time
+        require_stable_integral(world.plant, world.kp, world.kd, self.law, "integral_time", time)
+        _add_correction(world, "integral_action", IntegralAction(world.plant, world.kp / time))
 
 
 @dataclass(frozen=True)
 class AdaptiveActuation(PdActuation, AdaptationParameters):
     """The PD law and a feedforward of the estimated inertia and load of every joint (Slotine and Li, 1987).
 
+    Times and rates are for the reference body and scale with the subject.
+
     Joints without stiffness do not adapt: those that the balanced controller moves by torque.
     """
 
     def add_correction(self, world: World) -> None:
-        plant, kp, kd = world.plant, world.kp, world.kd
+        plant, kp, kd, own = world.plant, world.kp, world.kd, scaled(self, world.subject.scale)
         inertia = base_first_mass_matrix(plant, plant.CreateDefaultContext()).diagonal()[-kp.size :]
-        require_passive(kd, inertia, kp > 0, self.error_rate)
+        require_passive(kd, inertia, kp > 0, own.error_rate)
         # At a constant acceleration the adaptation is integral action, to which inertia and load each add up to kp / T.
         require_stable_integral(
-            plant, kp, kd, self.law, "adaptation_time", self.adaptation_time, gain=2.0, rate_time=1.0 / self.error_rate
+            plant, kp, kd, self.law, "adaptation_time", own.adaptation_time, gain=2.0, rate_time=1.0 / own.error_rate
         )
         # Also where the actuators have no limits: no joint of a person carries more.
         max_load = JointMap.of(world.model).effort_limits
-        _add_correction(world, "adaptive_feedforward", AdaptiveFeedforward(plant, kp, inertia, max_load, self))
+        _add_correction(world, "adaptive_feedforward", AdaptiveFeedforward(plant, kp, inertia, max_load, own))
 
 
 def _add_correction(world: World, name: str, system: IntegralAction | AdaptiveFeedforward) -> None:

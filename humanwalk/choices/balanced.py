@@ -1,18 +1,19 @@
 """The controller that balances: step planner and whole-body program, no external force."""
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
+from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
 from humanwalk.choices.world import World
@@ -31,7 +32,8 @@ START_FLEXION = 0.12
 """Flexion of hip and ankle at the start, half of the knee's [rad]: a straight leg cannot be shortened."""
 
 SETTLING = 2.0
-"""Time that the walk takes to settle after its first change of speed [s]: four steps, docs/balance.md."""
+"""Time that the walk of the reference body takes to settle after its first change of speed [s]: four steps,
+docs/balance.md."""
 
 KNOWLEDGE_ERRORS = 4
 """Stream of the seed from which errors of the known terrain are drawn."""
@@ -42,7 +44,10 @@ TASK_GAINS = 3
 
 @dataclass(frozen=True)
 class CompliantGains:
-    """PD gains beside the feedforward torque: joints are damped, the small joints of the feet also held."""
+    """PD gains beside the feedforward torque: joints are damped, the small joints of the feet also held.
+
+    Values are for the reference body and scale with the subject.
+    """
 
     damping: float = quantity(1.0, "N m s/rad", 0.0, 100.0)
     """Damping of every joint towards the planned rate."""
@@ -56,7 +61,10 @@ class CompliantGains:
 
 @dataclass(frozen=True)
 class BalancedController:
-    """Command, step planner and whole-body program; the last two run every control period."""
+    """Command, step planner and whole-body program; the last two run every control period.
+
+    Values of planner, program and gains are for the reference body and scale with the subject (docs/balance.md).
+    """
 
     command: CommandParameters = CommandParameters()
     """Speed and heading over time."""
@@ -65,12 +73,13 @@ class BalancedController:
     """What planner and whole-body program know of the terrain."""
 
     planner: StepPlannerParameters = StepPlannerParameters()
-    """Steps and balance."""
+    """Steps and balance; values are for the reference body and scale with the subject."""
 
     whole_body: WholeBodyParameters = WholeBodyParameters()
-    """Joint torques."""
+    """Joint torques; values are for the reference body and scale with the subject."""
 
     gains: CompliantGains = CompliantGains()
+    """PD gains of the joints; values are for the reference body and scale with the subject."""
 
     first_swing: Literal["Right", "Left"] = "Right"
     """Leg that swings first."""
@@ -99,13 +108,25 @@ class BalancedController:
         """When the first change of speed is over and the walk has settled [s]."""
         if not self.command.points:
             return 0.0
-        first = self.command.points[0]
+        first, time = self.command.points[0], subject.scale.time
         ramp = abs(complex(first.forward, first.sideways)) / self.command.acceleration
-        return first.time + self.planner.timing.weight_shift + ramp + SETTLING
+        return first.time + time * self.planner.timing.weight_shift + ramp + time * SETTLING
 
-    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        gains = self.gains
-        foot = np.isin(JointMap.of(model).names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
+    def fitted(self, subject: Subject) -> Self:
+        """The controller with planner, program and gains in the units of a subject's body."""
+        scale = subject.scale
+        return replace(
+            self,
+            planner=scaled(self.planner, scale),
+            whole_body=scaled(self.whole_body, scale),
+            gains=scaled(self.gains, scale),
+        )
+
+    def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
+        gains = self.fitted(subject).gains
+        foot = np.isin(
+            JointMap.of(kinematics_plant(subject)).names, [joint for leg in LEGS.values() for joint in leg.foot_joints]
+        )
         return np.where(foot, gains.foot_stiffness, 0.0), np.where(foot, gains.foot_damping, gains.damping)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
@@ -131,12 +152,13 @@ class BalancedController:
             raise ParameterError(
                 "controller: balanced needs the discrete plant; allowed: simulation.integrator: discrete; set it"
             )
+        fitted = self.fitted(world.subject)
         command = world.add("command", world.sources.command(self.command))
         planner = world.add(
             "planner",
             GaitPlanner(
                 world.model,
-                self.planner,
+                fitted.planner,
                 self.first_swing,
                 self.control_period,
                 sole_extent(world.subject.skeleton),
@@ -147,7 +169,7 @@ class BalancedController:
             foot_forces=world.port("foot_contact", "foot_forces"),
             command=command.GetOutputPort("command"),
         )
-        tasks = noisy_tasks(self.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
+        tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
         posture = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
         controller = world.add(
             "controller",

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.subject import Subject
@@ -68,8 +67,8 @@ class Controller(Protocol):
     def steady_from(self, subject: Subject) -> float:
         """Time from which the walk is steady, so that measures count [s]."""
 
-    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        """kp [N m/rad] and kd [N m s/rad] of the actuators, shape (n,) each, in actuator order.
+    def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
+        """kp [N m/rad] and kd [N m s/rad] of a subject's actuators, shape (n,) each, in actuator order.
 
         Raises:
             ParameterError: a gain is given for a joint that the body does not have.

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
+from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
@@ -42,7 +42,7 @@ class RecordedController:
     """Time in which the recording gets up to speed, since the body starts at rest."""
 
     support: BalanceSupportParameters = BalanceSupportParameters()
-    """The assumed balance: a spring-damper on the pelvis."""
+    """The assumed balance: a spring-damper on the pelvis; for the reference body, scales with the subject."""
 
     gains: JointGains = JointGains()
 
@@ -72,8 +72,8 @@ class RecordedController:
         """When the recording runs at full speed [s]."""
         return self.ease_in
 
-    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        return joint_gains(model, self.gains)
+    def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
+        return joint_gains(kinematics_plant(subject), self.gains, subject.scale)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
         """The first sample of the recording."""
@@ -88,7 +88,7 @@ class RecordedController:
             ParameterError: the recording or its mapping cannot be used.
         """
         pelvis_reference, desired_state = self.add_reference(world)
-        add_support(world, self.support, pelvis_reference)
+        add_support(world, scaled(self.support, world.subject.scale), pelvis_reference)
         return Command(desired_state)
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:

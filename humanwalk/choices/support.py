@@ -3,7 +3,6 @@
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import base_first_mass_matrix
-from humanwalk.body.subject import Subject
 from humanwalk.choices.world import World
 from humanwalk.control.balance_support import BalanceSupportParameters, largest_support_step
 from humanwalk.numerics.stability import round_down
@@ -12,21 +11,27 @@ from humanwalk.systems.balance_support import BalanceSupport
 
 
 def add_support(world: World, parameters: BalanceSupportParameters, pelvis_reference: OutputPort) -> None:
-    """Add `support`, scaled to the subject, unless it is disabled.
+    """Add `support`, unless it is disabled.
+
+    Args:
+        world: Where it acts.
+        parameters: Of the support, in the units of the subject's body.
+        pelvis_reference: Port of what the pelvis should do.
 
     Raises:
         ParameterError: the support, an explicit force, is not stable at the plant's step.
     """
     if not parameters.enabled:
         return
-    plant, subject, reference = world.plant, world.subject, Subject()
-    scaled = parameters.scaled(subject.known_mass / reference.mass, subject.stature / reference.stature)
+    plant = world.plant
     M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
-    stable = largest_support_step(M, world.kp, world.step_impedance, scaled)
+    stable = largest_support_step(M, world.kp, world.step_impedance, parameters)
     if plant.time_step() > stable:
         raise ParameterError(
             f"support: unstable at time_step {plant.time_step():g} s; allowed: steps up to {round_down(stable):g} s "
             "with this stiffness and damping; lower simulation.time_step, or rotational_damping and damping"
         )
-    support = world.add("support", BalanceSupport(plant, scaled), pelvis_reference=pelvis_reference, state=world.state)
+    support = world.add(
+        "support", BalanceSupport(plant, parameters), pelvis_reference=pelvis_reference, state=world.state
+    )
     world.builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())

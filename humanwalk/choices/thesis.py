@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
+from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
@@ -51,7 +52,7 @@ class GaitParameters:
 
 @dataclass(frozen=True)
 class BalanceParameters:
-    """What keeps the body upright."""
+    """What keeps the body upright; values are for the reference body and scale with the subject."""
 
     support: BalanceSupportParameters = BalanceSupportParameters()
     """The assumed balance: a spring-damper on the pelvis."""
@@ -95,8 +96,8 @@ class ThesisController:
         """When the ramp is over and the first foot has landed [s]."""
         return float(max(self.gait.ramp.duration, self.walk(subject).start_time))
 
-    def actuator_gains(self, model: MultibodyPlant) -> tuple[Array, Array]:
-        return joint_gains(model, self.gains)
+    def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
+        return joint_gains(kinematics_plant(subject), self.gains, subject.scale)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
         """Standing: legs straight, arms in the middle of their swing."""
@@ -106,20 +107,21 @@ class ThesisController:
         """Add gait, arms, inverse_kinematics, support and, where enabled, the balance levels between them."""
         gait, arms, solver = self._add_source(world)
         targets, posture = gait.GetOutputPort("sole_targets"), arms.GetOutputPort("posture")
-        if self.balance.foot_force.enabled:
+        balance = scaled(self.balance, world.subject.scale)
+        if balance.foot_force.enabled:
             weight = world.subject.known_mass * GRAVITY
             level_1 = world.add(
                 "foot_force_balance",
-                FootForceBalance(weight, self.balance.foot_force, self.control_period),
+                FootForceBalance(weight, balance.foot_force, self.control_period),
                 sole_targets=targets,
                 contact_schedule=gait.GetOutputPort("contact_schedule"),
                 foot_forces=world.port("foot_contact", "foot_forces"),
             )
             targets = level_1.GetOutputPort("shifted_targets")
-        if self.balance.upper_body.enabled:
+        if balance.upper_body.enabled:
             level_2 = world.add(
                 "upper_body_balance",
-                UpperBodyBalance(world.joints.names, self.balance.upper_body, self.control_period),
+                UpperBodyBalance(world.joints.names, balance.upper_body, self.control_period),
                 posture=posture,
                 soles=world.port("body_observer", "soles"),
                 com=world.port("body_observer", "com"),
@@ -127,7 +129,7 @@ class ThesisController:
             posture = level_2.GetOutputPort("balanced_posture")
         world.builder.Connect(targets, solver.GetInputPort("sole_targets"))
         world.builder.Connect(posture, solver.GetInputPort("posture"))
-        add_support(world, self.balance.support, gait.GetOutputPort("pelvis_reference"))
+        add_support(world, balance.support, gait.GetOutputPort("pelvis_reference"))
         samples = ("desired_state", "sample_time", "previous_state", "previous_time")
         return Command(**{name: solver.GetOutputPort(name) for name in samples})
 

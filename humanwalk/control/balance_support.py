@@ -1,6 +1,6 @@
 """The balance that the thesis assumes: a spring-damper between the pelvis and its walking reference."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,8 +17,7 @@ class BalanceSupportParameters:
     """Spring-damper between the pelvis and its walking reference; ours, since the thesis gives no law (E23).
 
     The softest values with which both feet of the scenario `thesis` stay within 0.5 cm of their lines and the pelvis
-    within 1 cm rms of its reference, and which are stable at steps up to 2 ms. Values are for the reference body, see
-    `scaled`.
+    within 1 cm rms of its reference, and which are stable at steps up to 2 ms. Values are for the reference body.
     """
 
     enabled: bool = True
@@ -45,17 +44,6 @@ class BalanceSupportParameters:
     def D(self) -> Array:
         """Damping of rotation, then translation, shape (6,) [N m s/rad, N s/m]."""
         return np.repeat((self.rotational_damping, self.damping), 3)
-
-    def scaled(self, mass_factor: float, length_factor: float) -> "BalanceSupportParameters":
-        """Scale the support to another body: forces with mass, torques with mass times length squared."""
-        torque_factor = mass_factor * length_factor**2
-        return replace(
-            self,
-            stiffness=self.stiffness * mass_factor,
-            damping=self.damping * mass_factor,
-            rotational_stiffness=self.rotational_stiffness * torque_factor,
-            rotational_damping=self.rotational_damping * torque_factor,
-        )
 
 
 def support_wrench(q_WP: Array, V_WP: Array, reference: Array, parameters: BalanceSupportParameters) -> Array:

@@ -9,6 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import group_of
+from humanwalk.body_units import REFERENCE_BODY, BodyScale
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, did_you_mean, quantity
 
@@ -27,7 +28,7 @@ STIFFNESS_BY_GROUP = {
     "elbow": 300.0,
     "wrist": 50.0,
 }
-"""kp [N m/rad] of the presets by group of joints; all but the ankle's are our choice."""
+"""kp [N m/rad] of the presets by group of joints, for the reference body; all but the ankle's are our choice."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class PdGains:
 
 @dataclass(frozen=True)
 class JointGains:
-    """PD gains of all joints."""
+    """PD gains of all joints, for the reference body; they scale with the subject."""
 
     preset: Literal["thesis", "damped"] = "thesis"
     """`damped`: kd from `damping_ratio` and the joint-space inertia; `thesis`: that, but the ankles at 10000/10."""
@@ -58,12 +59,15 @@ class JointGains:
     """Gains of single joints by name; they replace the preset's."""
 
 
-def joint_gains(model: MultibodyPlant, parameters: JointGains) -> tuple[Array, Array]:
+def joint_gains(
+    model: MultibodyPlant, parameters: JointGains, scale: BodyScale = REFERENCE_BODY
+) -> tuple[Array, Array]:
     """kp [N m/rad] and kd [N m s/rad] of all joints in actuator order, shape (n,) each.
 
     Args:
         model: finalized plant of the body.
         parameters: preset and single joints.
+        scale: from the reference body to this one.
 
     Raises:
         ParameterError: `joints` names no joint of the body.
@@ -71,11 +75,12 @@ def joint_gains(model: MultibodyPlant, parameters: JointGains) -> tuple[Array, A
     joints = JointMap.of(model)
     inertia = model.CalcMassMatrix(model.CreateDefaultContext()).diagonal()[joints.v]
     groups = [group_of(name) for name in joints.names]
-    kp = parameters.stiffness_scale * np.array([STIFFNESS_BY_GROUP[group] for group in groups])
+    unit = np.array((scale.factor("N m/rad"), scale.factor("N m s/rad")))
+    kp = parameters.stiffness_scale * np.array([STIFFNESS_BY_GROUP[group] for group in groups]) * unit[0]
     kd = 2.0 * parameters.damping_ratio * np.sqrt(kp * inertia)
     if parameters.preset == "thesis":
         ankle = np.array([group == "ankle" for group in groups])
-        kp[ankle], kd[ankle] = THESIS_ANKLE
+        kp[ankle], kd[ankle] = THESIS_ANKLE * unit
     for name, gains in parameters.joints.items():
         if name not in joints.names:
             raise ParameterError(
@@ -83,5 +88,5 @@ def joint_gains(model: MultibodyPlant, parameters: JointGains) -> tuple[Array, A
                 f"{did_you_mean(name, joints.names)}"
             )
         i = joints.names.index(name)
-        kp[i], kd[i] = gains.kp, gains.kd
+        kp[i], kd[i] = (gains.kp, gains.kd) * unit
     return kp, kd

@@ -51,7 +51,7 @@ def add_world(
         plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])
     model, random = kinematics_plant(subject), np.random.default_rng((scenario.seed, ACTUATOR_GAINS))
     kp, kd = (
-        gain * gain_factors(gain.size, start.gain_noise, random) for gain in scenario.controller.actuator_gains(model)
+        gain * gain_factors(gain.size, start.gain_noise, random) for gain in scenario.controller.actuator_gains(subject)
     )
     scenario.actuation.install(plant, kp, kd)
     if contact.leg_contact:

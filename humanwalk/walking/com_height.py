@@ -33,9 +33,9 @@ class ComHeight:
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
-    amplitude: float = quantity(0.009, "m", 0.0, 0.05)
-    """Amplitude of the arcs at 1 m/s; proportional to the square of the speed, as the drop between two straight legs is
-    to the square of the step length."""
+    amplitude: float = quantity(0.009, "s2/m", 0.0, 0.05)
+    """Amplitude of the arcs per squared speed; the drop between two straight legs is proportional to the square of the
+    step length."""
 
     delay: float = quantity(0.03, "s", -0.3, 0.3)
     """Time from touchdown to the lowest height."""

@@ -55,7 +55,7 @@ def test_the_balanced_walker_corrects_only_the_joints_that_it_holds(tmp_path: Pa
     case = scenario(tmp_path, "stand", actuation, duration="0.1")
     diagram = make_walker(case)
     model = diagram.GetSubsystemByName("plant")
-    kp, _ = case.controller.actuator_gains(model)
+    kp, _ = case.controller.actuator_gains(case.subject)
     what = COLUMNS[actuation][-1]
     values = matrix(simulate(case).signals, [f"{name}.{what}" for name in JointMap.of(model).names])
     np.testing.assert_array_equal(values[:, kp == 0], 0.0)

@@ -149,15 +149,6 @@ def test_its_damping_for_the_reference_body_is_as_documented() -> None:
     assert p.damping / (2 * np.sqrt(p.stiffness * mass)) == pytest.approx(0.88, abs=0.005)
 
 
-def test_the_support_scales_with_the_body() -> None:
-    """Forces go with the mass, torques with mass times length squared, as the body's inertias do."""
-    bigger = SUPPORT.scaled(2.0, 1.5)
-    shift, turn = np.array([0, 0, 0, 0.01, 0, 0]), np.array([0, 0.01, 0, 0, 0, 0])
-    for error, factor in ((shift, 2.0), (turn, 2.0 * 1.5**2)):
-        reference = wrench_at(displaced(error), ZERO, ZERO)
-        np.testing.assert_allclose(wrench_at(displaced(error), ZERO, ZERO, bigger), factor * reference, atol=1e-9)
-
-
 # Stability.
 
 
