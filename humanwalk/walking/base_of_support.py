@@ -28,6 +28,10 @@ class BaseOfSupport:
     """Distance of the centroidal moment pivot behind the nominal zero-moment point when a foot leaves the ground, and
     ahead of it at touchdown, per speed: the rate of the angular momentum of the swinging leg, over the weight."""
 
+    descent: float = quantity(0.17, "m", 0.0, 0.3)
+    """Distance of the nominal centroidal moment pivot ahead of the ankle in a step down, while the heel is up. The
+    center of pressure is below the ball, 13 cm ahead, and the leg that sinks in front moves the pivot on."""
+
     back: float = quantity(0.04, "m", 0.0, 0.1)
     """Limit behind the ankle."""
 

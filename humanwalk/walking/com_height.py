@@ -13,8 +13,8 @@ heel and ball."""
 HEEL_RISE = 0.03
 """Length that a leg gains when its heel rises [m] (our choice)."""
 
-RISE_SHARE = 0.6
-"""Share of the height of a step by which the longer leg limits the center of mass (our choice)."""
+RISE_SHARE, DESCENT_SHARE = 0.6, 0.8
+"""Shares of the height of a step up and of one down by which the longer leg limits the center of mass (our choice)."""
 
 FREE_SPREAD = 0.1
 """The same sideways [m]: about half the distance of the hips."""
@@ -43,6 +43,10 @@ class ComHeight:
     lowering_time_constant: float = quantity(0.08, "s", 0.02, 2.0)
     """Time constant of the mean height while a distant foothold requires a lower one."""
 
+    lowering_speed: float = quantity(0.6, "m/s", 0.05, 2.0)
+    """Speed at which the mean height decreases before a step down: as late as possible, since the body is still behind
+    the ball of the foot at first, and an ankle that bends no further would stop it there."""
+
     def arc_amplitude(self, speed: float) -> float:
         """Amplitude of the arcs [m] at a forward speed [m/s]."""
         return self.amplitude * speed**2
@@ -70,7 +74,18 @@ class ComHeight:
             rolling: Share of the ordinary heel-off before touchdown.
             standing: Height of the center of mass with straight legs [m].
         """
-        return standing + rolling * HEEL_RISE - RISE_SHARE * abs(rise)
+        return standing + rolling * HEEL_RISE - max(RISE_SHARE * rise, -DESCENT_SHARE * rise)
+
+    def before_descent(self, descent: float, remaining: float) -> float:
+        """Height by which the center of mass may still be higher than the foothold requires at touchdown [m].
+
+        Args:
+            descent: How much of a step down the step is, 0 to 1.
+            remaining: Time until touchdown [s].
+        """
+        # A critically damped mean height follows a limit that sinks with this delay.
+        delay = 2.0 * self.lowering_time_constant
+        return descent * self.lowering_speed * max(remaining - delay, 0.0)
 
     def approach(self, height: float, rate: float, goal: float, max_height: float) -> float:
         """Acceleration of the mean height [m/s2], critically damped.

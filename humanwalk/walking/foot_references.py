@@ -42,8 +42,9 @@ def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParame
     Before a step up the heel stays on the ground: a slow walker on its toes cannot move the zero-moment point back.
     Before a step down it rises earlier, because the ankle bends no further while the body sinks.
     """
-    share, step = parameters.swing.rolling_share, start.step_to(goal)
-    return parameters.rockers.ball * (share(max(step, 0.0)) + 1.0 - share(min(step, 0.0)))
+    swing, rockers, step = parameters.swing, parameters.rockers, start.step_to(goal)
+    earlier = swing.descent_share(step) * (rockers.descent - rockers.ball)
+    return rockers.ball * swing.rolling_share(max(step, 0.0)) + earlier
 
 
 def stance_rollover_speed(

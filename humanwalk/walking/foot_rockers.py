@@ -22,6 +22,9 @@ class FootRockers:
     ball: float = quantity(0.10, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot."""
 
+    descent: float = quantity(0.35, "s", 0.0, 0.6)
+    """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
+
     pitch: float = quantity(1.0, "rad", 0.0, 1.2)
     """Pitch of the foot at toe-off at 1 m/s and faster; proportional to the speed below."""
 

@@ -10,6 +10,8 @@ place of z: the point where a line through the center of mass along the ground f
 Herr 2005). For walking along x it is ahead of the zero-moment point by L_y' over the vertical force.
 """
 
+from __future__ import annotations
+
 import cmath
 import math
 from typing import NamedTuple
@@ -47,7 +49,7 @@ class ZmpSegment(NamedTuple):
             return self.end
         return self.start + (self.end - self.start) * min(max(t / self.duration, 0.0), 1.0)
 
-    def remainder(self, t: float) -> "ZmpSegment":
+    def remainder(self, t: float) -> ZmpSegment:
         """The part of the segment from t [s] after the start."""
         return ZmpSegment(self.at(t), self.end, max(self.duration - max(t, 0.0), 0.0))
 
@@ -88,6 +90,14 @@ def com_after(duration: float, com: complex, xi: complex, zmp: complex, frequenc
     return zmp + (com - zmp - half) / growth + half * growth
 
 
+def remainder(segments: tuple[ZmpSegment, ...], t: float) -> tuple[ZmpSegment, ...]:
+    """The part of consecutive segments from t [s] after their start; at least a part of the last one."""
+    first, *others = segments
+    if others and t >= first.duration:
+        return remainder(tuple(others), t - first.duration)
+    return (first.remainder(t), *others)
+
+
 class PerStance(NamedTuple):
     """A quantity of the step on the left foot and of the step on the right foot."""
 
@@ -114,6 +124,7 @@ class PeriodicGait(NamedTuple):
         roll: Displacement of the zero-moment point in single support [m].
         double_support, single_support: Durations [s].
         pivot: Greatest distance of the centroidal moment pivot from the zero-moment point [m].
+        hold: Last part of single support, in which the pivot does not move any more [s].
     """
 
     displacement: PerStance
@@ -122,19 +133,25 @@ class PeriodicGait(NamedTuple):
     double_support: float
     single_support: float
     pivot: complex = 0.0
+    hold: float = 0.0
 
     @property
     def pivot_end(self) -> complex:
         """The centroidal moment pivot at the end of single support; at its beginning it is at -`pivot` [m]."""
         return self.roll + self.pivot
 
-    def segments(self, stance: Side) -> tuple[ZmpSegment, ZmpSegment]:
+    def segments(self, stance: Side) -> tuple[ZmpSegment, ...]:
         """The centroidal moment pivot in double and single support of one step."""
         old_end = (self.pivot_end - self.displacement.on(other_side(stance))) * cmath.exp(-1j * self.turn)
         return (
             ZmpSegment(old_end, -self.pivot, self.double_support),
-            ZmpSegment(-self.pivot, self.pivot_end, self.single_support),
+            *self.along_foot(-self.pivot, self.pivot_end),
         )
+
+    def along_foot(self, start: complex, end: complex) -> tuple[ZmpSegment, ...]:
+        """The centroidal moment pivot in single support, from where it begins to where it ends [m]."""
+        rolling = ZmpSegment(start, end, self.single_support - self.hold)
+        return (rolling, ZmpSegment(end, end, self.hold)) if self.hold > 0.0 else (rolling,)
 
     def end_offsets(self, frequency: float) -> PerStance:
         """DCM at the end of each step, for which the walk is periodic.
@@ -147,3 +164,12 @@ class PeriodicGait(NamedTuple):
         left = self.displacement.left + u * backward(self.segments("Right"), 0.0, frequency)
         right = self.displacement.right + u * backward(self.segments("Left"), 0.0, frequency)
         return PerStance(left=(left + ua * right) / (1.0 - ua**2), right=(right + ua * left) / (1.0 - ua**2))
+
+    def end_offset(self, stance: Side, frequency: float, following: PeriodicGait) -> complex:
+        """DCM at the end of a step on a stance foot, relative to it, if another gait follows [m]."""
+        if following == self:
+            return self.end_offsets(frequency).on(stance)
+        other = other_side(stance)
+        segments = (self.segments(other)[0], *following.segments(other)[1:])
+        start = backward(segments, following.end_offsets(frequency).on(other), frequency)
+        return self.displacement.on(stance) + cmath.exp(1j * self.turn) * start

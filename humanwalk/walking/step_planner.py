@@ -29,7 +29,7 @@ from humanwalk.walking.support import SupportMotion, support_motion
 from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
-from humanwalk.walking.zmp_reference import desired_gait, pivot_lead, remaining_pivot
+from humanwalk.walking.zmp_reference import descent_shares, desired_gait, pivot_lead, remaining_pivot
 
 
 class Balance(NamedTuple):
@@ -129,10 +129,11 @@ class StepPlanner:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
         command = command.at_pace(preview.pace)
-        gait = desired_gait(state, command, p)
+        descent, next_descent, *_ = *descent_shares(state, p), 0.0, 0.0
+        gait, following = (desired_gait(state, command, p, share) for share in (descent, next_descent))
 
         # Nominal DCM: backward from its value at the end of the step, that of the periodic gait on the next footholds.
-        end = state.world(p.support.center + gait.end_offsets(self.frequency).on(state.stance))
+        end = state.world(p.support.center + gait.end_offset(state.stance, self.frequency, following))
         end += dcm_shift(preview.moves, gait, self.frequency)
         segments = remaining_pivot(state, gait, p)
         dcm_reference = backward(segments, end, self.frequency)
@@ -179,6 +180,7 @@ class StepPlanner:
             max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
             other_foot = swinging_foot(state, swing, phase_rate, p)
 
+        max_com_height += p.height.before_descent(descent, timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
         next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)

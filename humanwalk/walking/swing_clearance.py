@@ -59,7 +59,7 @@ class ClearanceParameters:
     rising: float = quantity(0.25, "", 0.0, 0.45)
     """Part of the swing in which a foot beside a riser only rises."""
 
-    sinking: float = quantity(0.25, "", 0.0, 0.45)
+    sinking: float = quantity(0.4, "", 0.0, 0.45)
     """Part of the swing in which a foot below an edge only sinks."""
 
 

@@ -64,6 +64,10 @@ class SwingParameters:
         """Share of the touchdown pitch for a step onto ground that is `rise` [m] above the plane of the stance foot."""
         return max(1.0 - abs(rise) / FLAT_RISE, 0.0)
 
+    def descent_share(self, rise: float) -> float:
+        """How much of a step down a step is, 0 to 1; `rise` as in `rolling_share`."""
+        return 1.0 - self.rolling_share(min(rise, 0.0))
+
     def touchdown_pitch(self, speed: float) -> float:
         """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
         return self.toe_up * clip(speed, 0.0, MAX_PITCH_SPEED)

@@ -1,16 +1,33 @@
 """The desired periodic gait, and the nominal centroidal moment pivot from now to the end of the step."""
 
 import cmath
+from itertools import pairwise
 
 from humanwalk.walking.command import Command
-from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment
+from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment, remainder
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.walking_reference import Phase
 
 
-def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> PeriodicGait:
-    """The periodic gait with the commanded velocity and the velocity towards the path."""
+def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tuple[float, ...]:
+    """Return how much of a step down this step is, and the next ones that are planned; 0 on a plane, 1 on stairs."""
+    feet = (state.stance_foot, *state.preview.footholds)
+    return tuple(parameters.swing.descent_share(start.step_to(goal)) for start, goal in pairwise(feet))
+
+
+def desired_gait(
+    state: PlannerState, command: Command, parameters: StepPlannerParameters, descent: float = 0.0
+) -> PeriodicGait:
+    """The periodic gait with the commanded velocity and the velocity towards the path.
+
+    Args:
+        state: State of the planner.
+        command: The command.
+        parameters: Parameters of the planner.
+        descent: How much of a step down its steps are, 0 to 1: in these the pivot is ahead of the ball while the heel
+            is up.
+    """
     timing, placement = state.timing, parameters.placement
     move = (command.velocity + state.path_correction) * timing.step
     turn = state.turn * timing.step
@@ -18,14 +35,17 @@ def desired_gait(state: PlannerState, command: Command, parameters: StepPlannerP
     width = max(placement.step_width, placement.min_width + abs(move.imag))
     half = 0.5j * width * (1.0 + cmath.exp(1j * turn))
     along = move * cmath.exp(0.5j * turn)
+    roll = parameters.support.roll * complex(max(command.forward, 0.0), command.sideways)
+    descending_roll = descent * (parameters.support.descent - parameters.support.center)
     return PeriodicGait(
         displacement=PerStance(left=along - half, right=along + half),
         turn=turn,
         # When walking backward, the feet land flat: the zero-moment point does not roll.
-        roll=parameters.support.roll * complex(max(command.forward, 0.0), command.sideways),
+        roll=complex(max(roll.real, descending_roll), roll.imag),
         double_support=timing.double_support,
         single_support=timing.single_support,
         pivot=parameters.support.pivot * max(command.forward, 0.0),
+        hold=min(descent * parameters.rockers.descent, timing.single_support),
     )
 
 
@@ -36,12 +56,12 @@ def remaining_pivot(
     timing, support = state.timing, parameters.support
     stance = support.center_of(state.stance_foot.position, state.heading)
     start, end = stance - gait.pivot * state.direction, stance + gait.pivot_end * state.direction
-    single = ZmpSegment(start, end, timing.single_support)
+    single = gait.along_foot(start, end)
     if state.phase is Phase.SINGLE_SUPPORT:
-        return (single.remainder(state.elapsed - timing.double_support),)
+        return remainder(single, state.elapsed - timing.double_support)
     old = support.center_of(state.old_foot.position, state.old_heading)
     old_end = old + gait.pivot_end * cmath.exp(1j * state.old_heading)
-    return (ZmpSegment(old_end, start, timing.double_support).remainder(state.elapsed), single)
+    return (ZmpSegment(old_end, start, timing.double_support).remainder(state.elapsed), *single)
 
 
 def pivot_lead(state: PlannerState, gait: PeriodicGait) -> complex:

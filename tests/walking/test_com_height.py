@@ -70,7 +70,22 @@ def test_the_mean_height_reaches_its_goal_within_the_limit_without_overshoot(
 
 @given(st.floats(0.0, 0.3), st.floats(0.0, 1.0))
 def test_the_center_of_mass_is_lower_for_a_high_step_up_or_down(rise: float, rolling: float) -> None:
-    height = ComHeight()
-    assert height.max_for_step(rise, rolling, 0.98) == height.max_for_step(-rise, rolling, 0.98)
-    assert height.max_for_step(rise, rolling, 0.98) <= height.max_for_step(0.5 * rise, rolling, 0.98)
-    assert height.max_for_step(0.0, 1.0, 0.98) > height.walking * 0.98
+    for step in (rise, -rise):
+        assert HEIGHT.max_for_step(step, rolling, 0.98) <= HEIGHT.max_for_step(0.5 * step, rolling, 0.98)
+    assert HEIGHT.max_for_step(-rise, rolling, 0.98) <= HEIGHT.max_for_step(rise, rolling, 0.98)
+    assert HEIGHT.max_for_step(0.0, 1.0, 0.98) > HEIGHT.walking * 0.98
+
+
+@given(st.floats(0.0, 0.15), st.floats(0.6, 1.0))
+def test_the_mean_height_is_lowered_late_before_a_step_down_and_in_time(depth: float, duration: float) -> None:
+    height, rate, end = 0.97, 0.0, 0.97 - depth
+    steps = round(duration / 0.001)
+    heights = []
+    for k in range(steps):
+        limit = end + HEIGHT.before_descent(1.0, duration - 0.001 * k)
+        rate += 0.001 * HEIGHT.approach(height, rate, 0.97, limit)
+        height += 0.001 * rate
+        heights.append(height)
+    assert heights[-1] == pytest.approx(end, abs=0.04)
+    assert heights[steps // 4] > 0.97 - 0.25 * depth - 1e-9
+    assert HEIGHT.before_descent(0.0, duration) == 0.0

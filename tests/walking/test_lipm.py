@@ -19,6 +19,7 @@ from humanwalk.walking.lipm import (
     divergent_component,
     forward,
     natural_frequency,
+    remainder,
 )
 
 points = st.builds(complex, st.floats(-1, 1), st.floats(-1, 1))
@@ -89,6 +90,7 @@ gaits = st.builds(
     double_support=st.floats(0.05, 0.2),
     single_support=st.floats(0.2, 0.6),
     pivot=st.floats(0.0, 0.1),
+    hold=st.sampled_from((0.0, 0.1, 0.2)),
 )
 
 
@@ -112,14 +114,52 @@ def test_each_step_begins_where_the_one_before_ended(gait: PeriodicGait, frequen
         assert start_of_new == pytest.approx(end_of_old, abs=1e-12)
 
 
+@given(gaits, gaits, frequencies)
+def test_the_dcm_at_the_end_of_a_step_leads_into_the_gait_that_follows(
+    gait: PeriodicGait, following: PeriodicGait, frequency: float
+) -> None:
+    """Through a double support that begins where the pivot of this gait ends, and a single support of the other one."""
+    for stance in SIDES:
+        other = other_side(stance)
+        start = (gait.end_offset(stance, frequency, following) - gait.displacement.on(stance)) / cmath.exp(
+            1j * gait.turn
+        )
+        path = (gait.segments(other)[0]._replace(end=-gait.pivot), *following.segments(other)[1:])
+        expected = following.end_offsets(frequency).on(other)
+        assert forward(path, start, frequency) == pytest.approx(expected, abs=1e-9)
+        assert gait.end_offset(stance, frequency, gait) == gait.end_offsets(frequency).on(stance)
+
+
+@given(gaits)
+def test_the_pivot_does_not_move_in_the_last_part_of_single_support(gait: PeriodicGait) -> None:
+    _, *single = gait.segments("Left")
+    assert sum(segment.duration for segment in single) == pytest.approx(gait.single_support)
+    assert single[-1].end == gait.pivot_end
+    if gait.hold > 0.0:
+        assert single[-1] == ZmpSegment(gait.pivot_end, gait.pivot_end, gait.hold)
+
+
+@given(st.lists(segments, min_size=1, max_size=3), st.floats(0.0, 3.0), points, frequencies)
+def test_the_remainder_is_what_follows_a_time(path: Any, t: float, xi: Any, frequency: float) -> None:
+    """The DCM at a time, propagated through the remainder, ends where it does through the whole."""
+    path = tuple(path)
+    total = sum(segment.duration for segment in path)
+    rest = remainder(path, t)
+    assert sum(segment.duration for segment in rest) == pytest.approx(max(total - t, 0.0), abs=1e-9)
+    if t <= total:
+        at_end = forward(path, xi, frequency)
+        assert forward(rest, backward(rest, at_end, frequency), frequency) == pytest.approx(at_end, abs=1e-6)
+        assert rest[-1].end == path[-1].end
+
+
 @given(gaits)
 def test_the_pivot_is_behind_the_zero_moment_point_when_a_swing_begins_and_ahead_when_it_ends(
     gait: PeriodicGait,
 ) -> None:
     """By the same distance, so that the angular momentum of a step is that of the one before."""
-    swing = gait.segments("Left")[1]
-    assert swing.start == pytest.approx(-gait.pivot)
-    assert swing.end == pytest.approx(gait.roll + gait.pivot)
+    _, *swing = gait.segments("Left")
+    assert swing[0].start == pytest.approx(-gait.pivot)
+    assert swing[-1].end == pytest.approx(gait.roll + gait.pivot)
 
 
 @given(st.floats(0.1, 0.4), frequencies)

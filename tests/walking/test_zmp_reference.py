@@ -13,11 +13,12 @@ from humanwalk.body import SIDES
 from humanwalk.sides import Side
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath
-from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.footholds import LEVEL, Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.preview import Preview
 from humanwalk.walking.walking_reference import Phase
-from humanwalk.walking.zmp_reference import desired_gait, pivot_lead, remaining_pivot
+from humanwalk.walking.zmp_reference import descent_shares, desired_gait, pivot_lead, remaining_pivot
 
 PARAMETERS = StepPlannerParameters()
 TIMING, PLACEMENT = PARAMETERS.timing, PARAMETERS.placement
@@ -116,3 +117,23 @@ def test_the_angular_momentum_of_a_step_is_that_of_the_one_before() -> None:
 
 def test_walking_backward_the_pivot_stays_at_the_zero_moment_point() -> None:
     assert desired_gait(state_at(), Command(-0.5), SWINGING).pivot == 0.0
+
+
+@given(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
+def test_only_steps_down_are_descents(rise: float, next_rise: float) -> None:
+    feet = (Foothold(1.0 - 0.1j, rise, LEVEL._replace(intercept=rise)), Foothold(1.5 + 0.1j, rise + next_rise))
+    shares = descent_shares(state_at(preview=Preview(feet)), PARAMETERS)
+    for share, height in zip(shares, (rise, next_rise), strict=True):
+        assert 0.0 <= share <= 1.0
+        assert (share > 0.0) == (height < -1e-9) or abs(height) < 1e-9
+    assert descent_shares(state_at(), PARAMETERS) == ()
+
+
+@given(st.floats(0.0, 0.8))
+def test_the_pivot_is_ahead_of_the_ball_while_the_heel_is_up_before_a_step_down(speed: float) -> None:
+    gait = desired_gait(state_at(), Command(speed), PARAMETERS, descent=1.0)
+    lead = PARAMETERS.rockers.descent
+    state = state_at(TIMING.step - 0.9 * lead, Phase.SINGLE_SUPPORT)
+    held = [state.local(segment.start).real for segment in remaining_pivot(state, gait, PARAMETERS)]
+    assert held == pytest.approx([PARAMETERS.support.descent] * len(held))
+    assert held[0] > PARAMETERS.support.ball
