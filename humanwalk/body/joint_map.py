@@ -11,7 +11,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 from pydrake.systems.framework import Context
 
-from humanwalk.numerics import Array, Indices
+from humanwalk.numerics import Array, Indices, Mask
+
+MAX_PLAY = 0.02
+"""Largest range of a locked joint [rad]: one degree."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,11 @@ class JointMap:
             upper=np.array([joint.position_upper_limits()[0] for joint in joints]),
             effort_limits=np.array([actuator.effort_limit() for actuator in actuators]),
         )
+
+    @property
+    def locked(self) -> Mask:
+        """Whether each joint has no more than play, so that its structure carries the torque, shape (n,)."""
+        return self.upper - self.lower <= MAX_PLAY
 
     def positions(self, state: Array) -> Array:
         """Return the joint angles [rad] of plant states [q; v] or positions q, shape (..., n)."""

@@ -75,6 +75,8 @@ def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
 def _hinge(joint: Joint) -> ET.Element:
     limits = {"limited": "true", "range": numbers(joint.range_rad)}
     dynamics = {"damping": number(joint.damping), "armature": number(joint.rotor_inertia)}
+    if joint.stiffness > 0.0:
+        dynamics |= {"stiffness": number(joint.stiffness), "springref": number(joint.rest_angle)}
     return ET.Element("joint", {"name": joint.name, "axis": numbers(joint.axis)} | limits | dynamics)
 
 

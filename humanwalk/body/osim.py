@@ -1,8 +1,8 @@
 """OpenSim model of a skeleton: bodies, joints, and the markers of motion capture.
 
 Coordinates have the names and signs of exported motions (`humanwalk.body.opensim_names`), so that OpenSim replays them.
-Axes are OpenSim's: x forward, y up, z right. Contact, actuators and the inertia of their rotors are left out: OpenSim
-adds forces of its own.
+Axes are OpenSim's: x forward, y up, z right. Loads and devices are bodies, passive springs of joints are forces.
+Contact, damping, actuators and the inertia of their rotors are left out: OpenSim adds forces of its own.
 """
 
 import xml.etree.ElementTree as ET
@@ -41,6 +41,10 @@ def to_osim(skeleton: Skeleton) -> str:
             )
         else:
             joints.append(_floating(segment.name, skeleton.root_height))
+    springs = [joint for joint in skeleton.joints if joint.stiffness > 0.0]
+    if springs:
+        forces = _set(model, "ForceSet")
+        forces.extend(map(_spring, springs))
     found = _set(model, "MarkerSet")
     for marker in markers(skeleton):
         element = ET.SubElement(found, "Marker", {"name": marker.name})
@@ -104,6 +108,17 @@ def _floating(body: str, height: float) -> ET.Element:
     x, y, z = np.eye(3)
     element.append(_transform(list(zip((z, x, y, x, y, z), (*PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS), strict=True))))
     return element
+
+
+def _spring(joint: Joint) -> ET.Element:
+    """The passive spring of a joint."""
+    coordinate, factor = COORDINATES.get(joint.name, (joint.name, 1.0))
+    spring = ET.Element("SpringGeneralizedForce", {"name": f"{joint.name}_Spring"})
+    ET.SubElement(spring, "coordinate").text = coordinate
+    ET.SubElement(spring, "stiffness").text = number(joint.stiffness)
+    ET.SubElement(spring, "rest_length").text = number(factor * joint.rest_angle)
+    ET.SubElement(spring, "viscosity").text = number(0.0)
+    return spring
 
 
 def _coordinate(name: str, value: float, limits: tuple[float, float]) -> ET.Element:

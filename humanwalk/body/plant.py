@@ -22,7 +22,7 @@ def register_package(package_map: PackageMap) -> None:
 
 
 def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
-    """Parse the subject's model with all loads, strictly, into a plant that is not finalized; returns its instance."""
+    """Parse the model of a subject, whole and strictly, into a plant that is not finalized; returns its instance."""
     parser = Parser(plant)
     parser.SetStrictParsing()
     register_package(parser.package_map())
@@ -36,10 +36,15 @@ def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
 def kinematics_plant(subject: Subject) -> MultibodyPlant:
     """Return a finalized plant of the subject alone, without geometry, for kinematics and inertia.
 
-    It is the walker's model of its body: it has the loads that are known. Its states are those of every plant of the
-    subject.
+    It is the walker's model of its body: it has the impairments, devices and loads that are known. Its states are those
+    of every plant of the subject.
     """
     return _plant_of(subject.known_skeleton)
+
+
+def body_plant(subject: Subject) -> MultibodyPlant:
+    """Return a finalized plant of the subject alone, without geometry, with everything that its model may lack."""
+    return _plant_of(subject.skeleton)
 
 
 @cache

@@ -109,7 +109,11 @@ def _revolute(joint: Joint) -> ET.Element:
     _add(axis, {"xyz": numbers(joint.axis)})
     lower, upper, effort = map(number, (*joint.range_rad, joint.effort_limit_N_m))
     _add(ET.SubElement(axis, "limit"), {"lower": lower, "upper": upper, "effort": effort})
-    _add(ET.SubElement(axis, "dynamics"), {"damping": number(joint.damping)})
+    dynamics = ET.SubElement(axis, "dynamics")
+    _add(dynamics, {"damping": number(joint.damping)})
+    if joint.stiffness > 0.0:
+        stiffness, rest = number(joint.stiffness), number(joint.rest_angle)
+        _add(dynamics, {"spring_stiffness": stiffness, "spring_reference": rest})
     _add(element, {"drake:rotor_inertia": number(joint.rotor_inertia), "drake:gear_ratio": "1"})
     return element
 

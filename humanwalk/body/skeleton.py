@@ -42,7 +42,8 @@ class Segment:
         source: Source of shape and mass.
         proportions: Size along x, y, z of what surrounds the joints (skin, soles, markers), relative to the same
             segment of the reference human of equal stature.
-        drawn: What is drawn in every look, for a segment that is no part of the body.
+        drawn: What is drawn in every look in addition, for loads and devices.
+        hidden: Parts of the look `person` that are not drawn.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Segment:
     source: str
     proportions: Vector3 = (1.0, 1.0, 1.0)
     drawn: tuple[Visual, ...] = ()
+    hidden: tuple[str, ...] = ()
 
     @property
     def inertia(self) -> Array:
@@ -85,6 +87,8 @@ class Joint:
         effort_source: Source of the torque limit.
         rotor_inertia: Reflected inertia of the actuator, gear ratio 1 [kg m2].
         damping: Viscous damping of the joint [N m s/rad].
+        stiffness: Of a passive spring [N m/rad].
+        rest_angle: Angle at which the spring is relaxed [rad].
     """
 
     name: str
@@ -99,6 +103,8 @@ class Joint:
     effort_source: str
     rotor_inertia: float
     damping: float
+    stiffness: float = 0.0
+    rest_angle: float = 0.0
 
     def mirrored(self) -> Joint:
         """Return the left counterpart of a right joint, positive in the same anatomical direction.
@@ -128,6 +134,7 @@ class Joint:
             effort_limit_N_m=self.effort_limit_N_m * mass * length,
             rotor_inertia=self.rotor_inertia * mass * length**2,
             damping=self.damping * mass * length**1.5,
+            stiffness=self.stiffness * mass * length,
         )
 
 

@@ -1,7 +1,7 @@
-"""The subject: the person that walks, and what it carries."""
+"""The subject: the person that walks, its impairments, devices and loads."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -11,7 +11,9 @@ import numpy as np
 from humanwalk.body.anatomy import human
 from humanwalk.body.build import person
 from humanwalk.body.de_leva import Sex
+from humanwalk.body.devices import DEVICES, Assistance, Device
 from humanwalk.body.growth import ADULT_AGE, MIN_AGE
+from humanwalk.body.impairments import IMPAIRMENTS, Impairment
 from humanwalk.body.loads import LOADS, Load, loaded
 from humanwalk.body.measured import completed, read_measurements
 from humanwalk.body.regions import regions
@@ -30,10 +32,13 @@ charts (from memory)."""
 
 @dataclass(frozen=True)
 class Subject:
-    """The person that walks: the thesis' body scaled, or a woman, man, girl or boy, or measured segments; and loads."""
+    """The person that walks: the thesis' body scaled, or a woman, man, girl or boy, or measured segments.
+
+    With impairments, devices and loads.
+    """
 
     mass: float = quantity(REFERENCE_MASS, "kg", *MASS_RANGE_KG)
-    """Body mass without loads (thesis 3.3.1: 70 kg)."""
+    """Body mass without impairments, devices and loads (thesis 3.3.1: 70 kg)."""
 
     stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
     """Standing height (thesis 3.3.1: 1.75 m)."""
@@ -49,6 +54,12 @@ class Subject:
 
     loads: tuple[Load, ...] = choice_list(LOADS)
     """What the person carries."""
+
+    impairments: tuple[Impairment, ...] = choice_list(IMPAIRMENTS)
+    """Joints and lengths that are not healthy."""
+
+    devices: tuple[Device, ...] = choice_list(DEVICES)
+    """Prosthesis and exoskeletons."""
 
     look: Look = "person"
     """Look of the body: a clothed person, or rods between joints with their axes and the contact spheres."""
@@ -81,11 +92,13 @@ class Subject:
         texts = [f"{self.mass:g} kg, {self.stature:g} m"]
         texts += [self.sex] if self.sex != "unspecified" else []
         texts += [f"{self.age:g} years"] if self.age < ADULT_AGE else []
+        texts += [tag_of(IMPAIRMENTS, impairment).replace("_", " ") for impairment in self.impairments]
+        texts += [tag_of(DEVICES, device).replace("_", " ") for device in self.devices]
         return ", ".join((*texts, *(f"{tag_of(LOADS, load)} {load.total:g} kg" for load in self.loads)))
 
     @property
     def body(self) -> Skeleton:
-        """The skeleton without loads.
+        """The healthy skeleton without devices and loads.
 
         Raises:
             ParameterError: the file with measured segments cannot be used.
@@ -94,13 +107,38 @@ class Subject:
 
     @property
     def skeleton(self) -> Skeleton:
-        """The skeleton with all loads."""
-        return loaded(self.body, self.loads)
+        """The skeleton with all impairments, devices and loads.
+
+        Raises:
+            ParameterError: the body cannot have them.
+        """
+        return self._skeleton(self.impairments, self.devices, self.loads)
 
     @property
     def known_skeleton(self) -> Skeleton:
-        """The skeleton with the loads that the walker's own model includes."""
-        return loaded(self.body, [load for load in self.loads if load.known])
+        """The skeleton with what the walker's own model includes."""
+        return self._skeleton(
+            [part for part in self.impairments if part.known],
+            [part for part in self.devices if part.known],
+            [load for load in self.loads if load.known],
+        )
+
+    @property
+    def assistance(self) -> tuple[Assistance, ...]:
+        """Torques of all devices."""
+        return tuple(torque for device in self.devices for torque in device.assistance())
+
+    def _skeleton(
+        self, impairments: Iterable[Impairment], devices: Iterable[Device], loads: Sequence[Load]
+    ) -> Skeleton:
+        skeleton = self.body
+        kinds: dict[str, type[Impairment] | type[Device]] = {**IMPAIRMENTS, **DEVICES}
+        for part in (*impairments, *devices):
+            try:
+                skeleton = part.applied(skeleton)
+            except ParameterError as error:
+                raise ParameterError(f"subject.{tag_of(kinds, part)}.{error}") from None
+        return loaded(skeleton, loads)
 
     @property
     def known_mass(self) -> float:

@@ -22,6 +22,7 @@ from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
 from humanwalk.body.shapes import Vector3
 from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 from humanwalk.body.visual import Visual
+from humanwalk.quantity import ParameterError
 from humanwalk.sides import SIDES
 
 DRAKE_NAMESPACE = "http://drake.mit.edu"
@@ -43,7 +44,16 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
 
     Returns:
         XML, ending in a newline.
+
+    Raises:
+        ParameterError: A joint has a spring, for which URDF has no place.
     """
+    for joint in skeleton.joints:
+        if joint.stiffness > 0.0:
+            raise ParameterError(
+                f"urdf: {joint.name} has a passive spring, for which URDF has no element; allowed: bodies without "
+                "springs; write .sdf, .xml or .osim"
+            )
     robot = ET.Element("robot", {"name": MODEL_NAME, "xmlns:drake": DRAKE_NAMESPACE})
     robot.append(ET.Comment(HEADER))
     spheres, boxes, looks = contact_spheres(skeleton), contact_boxes(skeleton), LOOKS[look](skeleton)

@@ -29,7 +29,8 @@ def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
     paired = [*_right_trunk_half(), *_right_face_half(), *_right_leg(), *_right_arm()]
     middle = [*_trunk(), *_head(), *(_long_hair() if skeleton.long_hair else ())]
     parts = (*middle, *paired, *(v.mirrored() for v in paired))
-    return (*(v.scaled(skeleton.size(v.body)) for v in parts), *(v for s in skeleton.segments for v in s.drawn))
+    shown = (v for v in parts if v.part not in skeleton.segment(v.body).hidden)
+    return (*(v.scaled(skeleton.size(v.body)) for v in shown), *(v for s in skeleton.segments for v in s.drawn))
 
 
 def _trunk() -> Iterator[Visual]:

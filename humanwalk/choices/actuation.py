@@ -8,6 +8,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 
 from humanwalk.body.joint_map import JointMap, base_first_mass_matrix
+from humanwalk.body.plant import body_plant
 from humanwalk.body_units import scaled
 from humanwalk.choices.world import World
 from humanwalk.control.adaptive_feedforward import AdaptationParameters, require_passive
@@ -60,7 +61,7 @@ class PdActuation:
 
     def add_to(self, world: World) -> None:
         plant, builder = world.plant, world.builder
-        limits = JointMap.of(world.model).effort_limits
+        limits = JointMap.of(body_plant(world.subject)).effort_limits
         if self.effort_limits == "none":
             limits = np.full_like(limits, np.inf)
         try:

@@ -13,6 +13,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
+from humanwalk.body.upright import knee_flexions
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
@@ -134,12 +135,9 @@ class BalancedController:
         lean = load_lean(subject)
         slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
         angles = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
-        for leg in LEGS.values():
-            angles |= {
-                leg.hip_flexion: START_FLEXION,
-                leg.knee: 2.0 * START_FLEXION,
-                leg.ankle: START_FLEXION + slope + lean,
-            }
+        for side, flexion in knee_flexions(subject.skeleton, 2.0 * START_FLEXION).items():
+            leg = LEGS[side]
+            angles |= {leg.hip_flexion: 0.5 * flexion, leg.knee: flexion, leg.ankle: 0.5 * flexion + slope + lean}
         return StartPosture(angles, RigidTransform(RollPitchYaw(0.0, lean, 0.0), np.zeros(3)))
 
     def add_to(self, world: World) -> Command:
@@ -177,6 +175,8 @@ class BalancedController:
             state=world.state,
             plan=planner.GetOutputPort("plan"),
         )
+        if world.known_assistance is not None:
+            world.builder.Connect(world.known_assistance, controller.GetInputPort("assistance"))
         state, time, torque = map(controller.GetOutputPort, ("desired_state", "sample_time", "torque"))
         return Command(state, time, feedforward=torque)
 

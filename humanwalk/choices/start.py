@@ -20,6 +20,10 @@ RATES = 1
 """Stream of the seed from which the rates' noise is drawn, independent of that of the angles."""
 
 
+ROUNDING = 1e-9
+"""Distance beyond a joint's range [rad] that comes from the ten digits of a model file."""
+
+
 @dataclass(frozen=True)
 class StartParameters:
     """The body at time zero: at rest above the origin, facing +x."""
@@ -85,7 +89,7 @@ def start_positions(
             )
     angles = {**posture.angles, **start.joint_angles}
     theta = np.array([angles.get(name, 0.0) for name in joints.names])
-    for i in np.flatnonzero((theta < joints.lower) | (theta > joints.upper)):
+    for i in np.flatnonzero((theta < joints.lower - ROUNDING) | (theta > joints.upper + ROUNDING)):
         nearest = np.clip(theta[i], joints.lower[i], joints.upper[i])
         raise ParameterError(
             f"start.joint_angles.{joints.names[i]}: {theta[i]:g} is beyond the joint's range; allowed: "

@@ -33,6 +33,7 @@ class World:
         kp, kd: gains of the actuators, in actuator order [N m/rad], [N m s/rad], shape (n,).
         step_impedance: of the actuation, in actuator order.
         sources: systems that command and push the walker.
+        known_assistance: torques of exoskeletons that the walker's model includes; None without.
         spatial_forces: ports of forces on bodies, connected to the plant at the end.
     """
 
@@ -48,6 +49,7 @@ class World:
     kd: Array
     step_impedance: StepImpedance
     sources: Sources = FROM_SCENARIO
+    known_assistance: OutputPort | None = None
     spatial_forces: list[OutputPort] = field(default_factory=list)
 
     @property

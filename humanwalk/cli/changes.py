@@ -67,6 +67,24 @@ class Changes:
             "weights (mass of each) or suitcase; unknown: the walker's model of its body lacks it.",
         ),
     ] = dataclasses.field(default_factory=list)
+    impairment: Annotated[
+        list[str],
+        _option(
+            metavar="IMPAIRMENT",
+            help='Impairment, instead of the scenario\'s, like "stiff knee left 10 deg" or "short leg 3 cm"; can be '
+            "given several times. Grammar: IMPAIRMENT [right | left | both] [[FIELD] VALUE [UNIT], ...] [unknown]; "
+            "IMPAIRMENT is stiff knee, weak plantarflexors, hip contracture, short leg or joint.",
+        ),
+    ] = dataclasses.field(default_factory=list)
+    device: Annotated[
+        list[str],
+        _option(
+            metavar="DEVICE",
+            help='Device, instead of the scenario\'s, like "ankle prosthesis left" or "hip exoskeleton 15 N m"; can be '
+            "given several times. Grammar: DEVICE [right | left | both] [[FIELD] VALUE [UNIT], ...] [unknown]; DEVICE "
+            "is ankle prosthesis, ankle exoskeleton or hip exoskeleton.",
+        ),
+    ] = dataclasses.field(default_factory=list)
     terrain: Annotated[
         str | None,
         _option(
@@ -86,7 +104,13 @@ class Changes:
         Raises:
             ParameterError: a text that cannot be read, or a scenario whose speed cannot be set.
         """
-        from humanwalk.cli.shorthands import load_overrides, push_overrides, terrain_overrides
+        from humanwalk.cli.shorthands import (
+            device_overrides,
+            impairment_overrides,
+            load_overrides,
+            push_overrides,
+            terrain_overrides,
+        )
 
         overrides = {**(base or {}), **overrides_of(self.set_)}
         for name in ("mass", "stature", "sex", "age"):
@@ -94,6 +118,10 @@ class Changes:
                 overrides[f"subject.{name}"] = repr(getattr(self, name))
         if self.load:
             overrides |= load_overrides(self.load)
+        if self.impairment:
+            overrides |= impairment_overrides(self.impairment)
+        if self.device:
+            overrides |= device_overrides(self.device)
         if self.terrain is not None:
             overrides |= terrain_overrides(self.terrain)
         if self.push:
@@ -114,7 +142,8 @@ class Changes:
             "age": (self.age, "years"),
         }
         texts = [f"{name} {value:g} {unit}" for name, (value, unit) in numbers.items() if value is not None]
-        texts += [text for text in (self.sex, self.terrain) if text is not None] + self.load
+        texts += [text for text in (self.sex, self.terrain) if text is not None]
+        texts += [*self.load, *self.impairment, *self.device]
         return texts + [f"push {push}" for push in self.push]
 
 

@@ -42,6 +42,8 @@ def model(
 
     SDF or URDF for Drake, MJCF for MuJoCo, OSIM for OpenSim.
     """
+    from humanwalk.body.devices import DEVICES
+    from humanwalk.body.impairments import IMPAIRMENTS
     from humanwalk.body.loads import LOADS
     from humanwalk.body.model_file import write_model
     from humanwalk.cli.segment_table import segment_table
@@ -53,9 +55,11 @@ def model(
     if output is not None:
         write_model(output, skeleton, look)  # type: ignore[arg-type]
     stdout.print(segment_table(subject))
-    for load in subject.loads:
-        known = "known" if load.known else "unknown"
-        console.print(f"{tag_of(LOADS, load)}: {load.total:g} kg, {known} to the walker", soft_wrap=True)
+    parts = [(f"{tag_of(LOADS, load)}: {load.total:g} kg", load.known) for load in subject.loads]
+    parts += [(f"impairment {tag_of(IMPAIRMENTS, part)}", part.known) for part in subject.impairments]
+    parts += [(f"device {tag_of(DEVICES, part)}", part.known) for part in subject.devices]
+    for text, is_known in parts:
+        console.print(f"{text}, {'known' if is_known else 'unknown'} to the walker", soft_wrap=True)
     if output is not None:
         console.print(
             f"{output}: {len(skeleton.segments)} bodies, {len(skeleton.joints)} revolute joints, "

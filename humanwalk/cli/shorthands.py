@@ -7,6 +7,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from humanwalk.body.devices import DEVICES
+from humanwalk.body.impairments import IMPAIRMENTS
 from humanwalk.body.loads import LOADS
 from humanwalk.quantity import ParameterError, did_you_mean, printable
 from humanwalk.terrain import TERRAINS
@@ -20,6 +22,8 @@ TERRAIN_EXAMPLE = "plane slope 3 deg, friction coefficient 0.5"
 
 LOAD_GRAMMAR = "LOAD MASS kg [in the right hand | in the left hand] [unknown]"
 LOAD_EXAMPLE = "backpack 10 kg"
+
+PART_GRAMMAR = "{} [right | left | both] [[FIELD] VALUE [UNIT], ...] [unknown]"
 
 BEARINGS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
 """Where a push comes from, for a walker that faces x: angle from x to the left [deg]."""
@@ -40,6 +44,10 @@ LOAD = re.compile(
     re.VERBOSE,
 )
 FIELD = re.compile(rf"(?P<name>[A-Za-z_][A-Za-z_ ]*?)\s+(?:(?P<number>{NUMBER})\s*(?P<unit>\S*)|(?P<word>\S+))")
+
+PART = re.compile(
+    rf"(?P<name>(?:[A-Za-z_][A-Za-z_ ]*?(?=\s))?)\s*(?:(?P<number>{NUMBER})\s*(?P<unit>[^\d]*)|(?P<word>[A-Za-z_]\w*))"
+)
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.radians(1.0)},
@@ -97,6 +105,61 @@ def _load(text: str) -> dict[str, dict[str, Any]]:
     fields: dict[str, Any] = {"mass": float(found["mass"]), "known": found["unknown"] is None}
     if found["side"]:
         fields["side"] = found["side"].capitalize()
+    return {tag: fields}
+
+
+def impairment_overrides(texts: Sequence[str]) -> dict[str, str]:
+    """The impairments of a subject, like "stiff knee left 10 deg".
+
+    Raises:
+        ParameterError: a text is no impairment.
+    """
+    return {"subject.impairments": json.dumps([_part(text, "--impairment", IMPAIRMENTS) for text in texts])}
+
+
+def device_overrides(texts: Sequence[str]) -> dict[str, str]:
+    """The devices of a subject, like "ankle prosthesis left" or "hip exoskeleton 15 N m".
+
+    Raises:
+        ParameterError: a text is no device.
+    """
+    return {"subject.devices": json.dumps([_part(text, "--device", DEVICES) for text in texts])}
+
+
+def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, dict[str, Any]]:
+    """An impairment or device by its text; a value without a field is that of the kind's first quantity."""
+    words = text.strip().replace("_", " ")
+    tag = next((tag for tag in kinds if words.startswith(tag.replace("_", " "))), "")
+    grammar = PART_GRAMMAR.format(option.strip("-").upper())
+    end = f"allowed: {grammar} with {option.strip('-').upper()} one of {', '.join(kinds)}"
+    if not tag:
+        near = did_you_mean("_".join(words.split()[:2]), tuple(kinds))
+        raise ParameterError(f"{option} {printable(text)}: no such kind; {end}; write one of them{near}")
+    known = _fields(kinds[tag])
+    first = next(name for name, field in known.items() if "unit" in field.metadata)
+    fields: dict[str, Any] = {}
+    rest = words[len(tag) :].split()
+    if rest and rest[0] in ("right", "left", "both"):
+        fields["side"] = rest.pop(0).capitalize()
+    if rest and rest[-1] == "unknown" and "known" in known:
+        fields["known"] = False
+        rest.pop()
+    for item in " ".join(rest).split(",") if rest else ():
+        found = PART.fullmatch(item.strip())
+        name = "_".join(found["name"].split()) or first if found else ""
+        if found is None or name not in known:
+            raise ParameterError(
+                f"{option} {printable(text)}: {printable(item.strip())} is not FIELD VALUE of {tag}, which has "
+                f"{', '.join(known)}; {end}; correct it{did_you_mean(name, tuple(known))}"
+            )
+        unit, written = known[name].metadata.get("unit", ""), (found["unit"] or "").strip()
+        factor = UNITS.get(unit, {unit: 1.0}).get(written) if written else 1.0
+        if factor is None:
+            raise ParameterError(
+                f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
+                f"{' or '.join(UNITS.get(unit, {unit: 1.0}))}; write one of them"
+            )
+        fields[name] = found["word"] if found["number"] is None else float(found["number"]) * factor
     return {tag: fields}
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable, MultibodyForces
+from pydrake.multibody.tree import ForceElementIndex, JacobianWrtVariable, MultibodyForces, RevoluteSpring
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
@@ -53,7 +53,7 @@ class Dynamics(NamedTuple):
     Attributes:
         q, v: positions and velocities of the plant.
         M: mass matrix, (nv, nv).
-        h: (nv,) [N m, N].
+        h: (nv,) [N m, N]; with the passive springs of the joints.
         com: center of mass.
         bodies: names of pelvis, chest and the bodies of the feet, n of them.
         X_WB: rotation matrix and position of each body frame, (n, 3, 4) [m].
@@ -98,6 +98,12 @@ class BodyDynamics:
         self._damping = np.zeros(plant.num_velocities())
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
+        elements = (plant.get_force_element(ForceElementIndex(i)) for i in range(plant.num_force_elements()))
+        springs = [element for element in elements if isinstance(element, RevoluteSpring)]
+        self._spring_v = np.array([spring.joint().velocity_start() for spring in springs], dtype=int)
+        self._spring_q = np.array([spring.joint().position_start() for spring in springs], dtype=int)
+        self._stiffness = np.array([spring.default_stiffness() for spring in springs])
+        self._rest_angle = np.array([spring.default_nominal_angle() for spring in springs])
         self._no_acceleration = np.zeros(plant.num_velocities())
         self._upward = self._no_acceleration.copy()
         self._upward[3:6] = -plant.gravity_field().gravity_vector()
@@ -125,4 +131,6 @@ class BodyDynamics:
             velocity=M[3:6] @ v / self.mass,
             bias=h[3:6] / self.mass - self._upward[3:6],
         )
-        return Dynamics(q, v, M, h + self._damping * v, com, self.bodies, X_WB, J @ v, J, bias)
+        h = h + self._damping * v
+        h[self._spring_v] += self._stiffness * (q[self._spring_q] - self._rest_angle)
+        return Dynamics(q, v, M, h, com, self.bodies, X_WB, J @ v, J, bias)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body.contact import ContactSphere
+from humanwalk.body.impairments import NO_TORQUE
 from humanwalk.body.limbs import JOINT_GROUPS, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
@@ -27,6 +28,12 @@ JOINT_LIMIT_STIFFNESS = 900.0
 JOINT_LIMIT_DAMPING = 60.0
 """Bound of a joint's acceleration toward its limit per distance [1/s2] and per velocity [1/s]: a critically damped stop
 with a time constant of 1/30 s (our choice)."""
+
+LOCKED_TORQUE = 1e4
+"""Torque that a locked joint carries [N m]; never active."""
+
+UNLIMITED = np.array(((-np.inf,), (np.inf,)))
+"""Range of a joint without muscles."""
 
 UNBOUNDED = np.tile(((-1e4,), (1e4,)), 6)
 """Lower and upper bounds of the accelerations of the floating base [rad/s2, m/s2]; never active."""
@@ -64,7 +71,7 @@ class WholeBodyQp:
 
     Attributes:
         names: joints in the order of the velocities from the seventh on.
-        limits: their torque limits [N m].
+        limits: torque limits of their actuators [N m]; 0 where the joint is locked.
     """
 
     def __init__(
@@ -99,7 +106,17 @@ class WholeBodyQp:
 
         margin = parameters.knee_margin * np.isin(self.names, JOINT_GROUPS["knee"])
         self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
-        torque_limits = np.concatenate((np.zeros(6), self.limits[: m - 6]))
+        # A locked joint is held by its structure, anywhere in its play.
+        locked = joints.locked[order]
+        self.limits[locked] = 0.0
+        self._locked = locked[: m - 6]
+        # Nothing in the program's reach keeps a joint without muscles within its range.
+        passive = ~locked & (self.limits <= NO_TORQUE)
+        self._range[:, passive[: m - 6]] = UNLIMITED
+        self._passive_ankles = [
+            side for side, leg in LEGS.items() if self.limits[self.names.index(leg.ankle)] <= NO_TORQUE
+        ]
+        torque_limits = np.concatenate((np.zeros(6), np.where(locked, LOCKED_TORQUE, self.limits)[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
 
     def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
@@ -131,7 +148,7 @@ class WholeBodyQp:
         desired, prescribed = desired[: m - 6], desired[m - 6 :]
         soles = self._soles.on(reference.ground, body)
 
-        J, a, w = tasks(body, soles, reference, p)
+        J, a, w = tasks(body, soles, reference, p, self._passive_ankles)
         a -= J[:, m:] @ prescribed
         J = J[:, :m]
         WJ = w[:, None] * J
@@ -141,7 +158,8 @@ class WholeBodyQp:
 
         contacts = soles.contacts(body, reference, p)
         max_force = np.repeat(MAX_FORCE / FORCE_UNIT * contacts.load, EDGES)
-        toward_limits = JOINT_LIMIT_STIFFNESS * (self._range - q[: m - 6]) - JOINT_LIMIT_DAMPING * v[: m - 6]
+        distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
+        toward_limits = JOINT_LIMIT_STIFFNESS * distance - JOINT_LIMIT_DAMPING * v[: m - 6]
         bounds = (
             (np.zeros_like(max_force), max_force),
             UNBOUNDED,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from humanwalk.body import SIDES
+from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.control.body_dynamics import Dynamics, FrameMotion
 from humanwalk.control.whole_body_contacts import SolesOnGround
@@ -40,12 +40,14 @@ class Foot(NamedTuple):
         hindfoot, toes: frames of its first and last body.
         p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
         heel_height: of that point above the terrain [m].
+        is_steered: whether the ankle has muscles that turn the foot.
     """
 
     hindfoot: FrameMotion
     toes: FrameMotion
     p_BHeel: Array
     heel_height: float
+    is_steered: bool
 
     def sinking(self, R_WS: Array, p: WholeBodyParameters) -> Array:
         """Desired velocity of a stance foot in W [m/s], (3,): 0, or toward the ground if it is still in the air."""
@@ -53,9 +55,21 @@ class Foot(NamedTuple):
 
 
 def tasks(
-    body: Dynamics, soles: SolesOnGround, reference: WalkingReference, p: WholeBodyParameters
+    body: Dynamics,
+    soles: SolesOnGround,
+    reference: WalkingReference,
+    p: WholeBodyParameters,
+    passive_ankles: Collection[Side] = (),
 ) -> tuple[Array, Array, Array]:
-    """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,)."""
+    """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,).
+
+    Args:
+        body: at this state.
+        soles: at this state.
+        reference: what feet, center of mass and trunk should do.
+        p: gains and weights.
+        passive_ankles: sides without muscles at the ankle.
+    """
     found = [
         *_center_of_mass(body, reference, p),
         _center_of_pressure(body, reference, p),
@@ -64,7 +78,8 @@ def tasks(
     ]
     for side in SIDES:
         leg, foot = LEGS[side], reference.foot(side)
-        state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side))
+        is_steered = side not in passive_ankles
+        state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side), is_steered)
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
     J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
     return np.concatenate(J), np.concatenate(acceleration), np.repeat(weight, [len(a) for a in acceleration])
@@ -104,6 +119,13 @@ def _rotation(
     return Task(frame.J[:3], desired - frame.bias[:3], gains.weight)
 
 
+def _turn(foot: Foot, rotation: Task) -> Task:
+    """The rotation of a foot; of one on a passive ankle only about the vertical, which is the hip's."""
+    if foot.is_steered:
+        return rotation
+    return Task(rotation.J[2:], rotation.acceleration[2:], rotation.weight)
+
+
 def _no_motion(frame: FrameMotion, velocity: Array, gains: TaskGains) -> Task:
     """A frame should not turn and have a translational velocity in W."""
     desired = gains.damping * (np.concatenate((REST, velocity)) - frame.V_WB)
@@ -119,7 +141,7 @@ def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -
     heel = foot.hindfoot.point(foot.p_BHeel)
     desired = p.stance.damping * (foot.sinking(reference.R_WS, p) - heel.velocity)
     yield Task(heel.J, desired - heel.bias, p.stance.weight)
-    yield _rotation(foot.hindfoot, reference.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike)
+    yield _turn(foot, _rotation(foot.hindfoot, reference.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike))
 
 
 def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
@@ -129,7 +151,8 @@ def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> I
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
     whole = _rotation(foot.hindfoot, R_WG, p.heel_off, rate * axis, acceleration * axis)
-    yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
+    if foot.is_steered:
+        yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
 
 
 def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
@@ -147,7 +170,7 @@ def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iter
     angle, pitch_rate, pitch_acceleration = reference.pitch
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
-    yield _rotation(frame, R_WG, p.swing_rotation, pitch_rate * axis, pitch_acceleration * axis)
+    yield _turn(foot, _rotation(frame, R_WG, p.swing_rotation, pitch_rate * axis, pitch_acceleration * axis))
 
 
 _FOOT_TASKS: dict[FootTask, Callable[[Foot, FootReference, WholeBodyParameters], Iterator[Task]]] = {

@@ -1,11 +1,13 @@
 """The walker of a scenario as a Diagram."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer, MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.choices.controller import Command
+from humanwalk.choices.exoskeleton import add_exoskeleton
 from humanwalk.choices.pushes import add_pushes
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.diagrams.playback import make_playback
@@ -20,17 +22,18 @@ def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FRO
     Subsystems by name: plant, scene_graph, body_observer, foot_contact, actuators, pushes, and those of the
     controller: gait, arms, inverse_kinematics and, where enabled, support, foot_force_balance, upper_body_balance
     (thesis); command, planner, controller (balanced); recording, support (recorded). The actuation adds
-    integral_action (pid) or adaptive_feedforward (adaptive).
+    integral_action (pid) or adaptive_feedforward (adaptive), a subject with an exoskeleton the system exoskeleton.
 
     Exported outputs: state (97), net_actuation (42), contact_results, query_object, and every `Signal` of a subsystem
     under its name: desired_state (84), torque (42), saturated (42), soles (6), com (6), foot_forces (16),
     friction_use (2), push (3), and those of the controller: ik_status (6), pelvis_reference (13), phase (2),
     contact_schedule (2), support_wrench (6), foot_shift (12), alpha (4) (thesis); phase (2), contact_schedule (2),
     command (3), balance (9), qp_status (3) (balanced); pelvis_reference (13), support_wrench (6) (recorded); and those
-    of the actuation: integral_torque (42) (pid); estimates (84) (adaptive). Joints come in actuator order.
+    of the actuation: integral_torque (42) (pid); estimates (84) (adaptive); and exoskeleton_torque (42) of an
+    exoskeleton. Joints come in actuator order.
 
-    Exported input: feedforward (42), torque added to every actuator's law [N m]; optional, and only where the
-    controller has none of its own.
+    Exported inputs: feedforward (42), torque added to every actuator's law [N m]; optional, and only where the
+    controller has none of its own. exoskeleton_command (42), torque added to that of an exoskeleton [N m]; optional.
 
     Args:
         scenario: what is simulated.
@@ -48,6 +51,7 @@ def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FRO
         )
     builder = DiagramBuilder()
     world = add_world(builder, scenario, visuals, sources)
+    world = replace(world, known_assistance=add_exoskeleton(world))
     scenario.actuation.add_to(world)
     _connect_command(builder, scenario.controller.add_to(world))
     add_pushes(world, scenario.pushes)

@@ -14,6 +14,7 @@ from humanwalk.body import Side
 from humanwalk.measures.curves import CURVES, JOINTS, over_strides
 from humanwalk.measures.normative import Band, SpeedGroup
 from humanwalk.measures.signals import matrix
+from humanwalk.measures.symmetry import Asymmetry, asymmetries
 from humanwalk.measures.walk_measures import MEASURES, Measure, Walk
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
@@ -82,6 +83,7 @@ class Comparison:
         group: whose curves it is compared with.
         curves: agreement of each leg's strides by name of the curve in CURVES.
         measures: of steps, ground force, center of pressure, center of mass and effort.
+        asymmetries: measures of both legs, by name.
     """
 
     strides: Mapping[Side, int]
@@ -89,6 +91,7 @@ class Comparison:
     group: SpeedGroup
     curves: Mapping[str, Mapping[Side, Likeness]]
     measures: tuple[Measure, ...]
+    asymmetries: Mapping[str, Asymmetry]
 
     def mean(self, curve: str, name: str) -> float:
         """Mean of an attribute of the likeness over the strides of both legs; those without a value do not count."""
@@ -131,6 +134,7 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
         group=walk.pace.group,
         curves=curves,
         measures=tuple(kind.of_walk(walk) for kind in MEASURES),
+        asymmetries=asymmetries(walk),
     )
 
 

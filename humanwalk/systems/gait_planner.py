@@ -7,7 +7,8 @@ from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
-from humanwalk.body.limbs import LEGS, other_side
+from humanwalk.body.limbs import other_side
+from humanwalk.body.upright import upright
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
@@ -59,16 +60,12 @@ class GaitPlanner(LeafSystem):
         """
         super().__init__()
         self._ground = ground
-        upright, leg = plant.CreateDefaultContext(), LEGS[first_swing]
-        hip, ankle, bottom = (
-            float(plant.GetFrameByName(frame).CalcPoseInWorld(upright).translation()[2])
-            for frame in (leg.thigh, leg.hindfoot, leg.sole)
-        )
+        standing = upright(plant)
         self._planner = StepPlanner(
             parameters,
-            standing_com_height=float(plant.CalcCenterOfMassPositionInWorld(upright)[2]) - bottom,
-            ankle_height=ankle - bottom,
-            leg_length=hip - ankle,
+            standing_com_height=standing.com_height,
+            ankle_height=standing.ankle_height,
+            leg_length=standing.leg_length,
             first_swing=first_swing,
             period=period,
             sole=sole,

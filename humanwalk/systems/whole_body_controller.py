@@ -9,7 +9,7 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Leaf
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.body.limbs import ARMS, LEGS
-from humanwalk.control.body_dynamics import BodyDynamics
+from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.systems.signal import Signal
@@ -30,6 +30,8 @@ class WholeBodyController(LeafSystem):
     Inputs:
         state: plant state [q; v].
         plan: WalkingReference.
+        assistance: (n) known torque of devices on the joints, in actuator order [N m]; the actuators deliver the rest.
+            Optional; default: zero.
 
     Outputs (all are state; evaluating them solves nothing), n joints in actuator order:
         torque: (n) feedforward torque of the actuators [N m].
@@ -74,6 +76,7 @@ class WholeBodyController(LeafSystem):
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
+        self._assistance = self.DeclareVectorInputPort("assistance", n)
         self._torque, self._desired, self._time, self._status = (
             self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS_COLUMNS))
         )
@@ -87,7 +90,7 @@ class WholeBodyController(LeafSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context)
-        body = self._dynamics.at(self._state.Eval(context))
+        body = self._assisted(context, self._dynamics.at(self._state.Eval(context)))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         solution = self._qp.solve(body, reference, posture)
@@ -108,6 +111,14 @@ class WholeBodyController(LeafSystem):
         discrete_state.set_value(self._time, np.array([context.get_time()]))
         discrete_state.set_value(self._status, np.array([solution is not None, failures, in_a_row], dtype=float))
         return EventStatus.Succeeded()
+
+    def _assisted(self, context: Context, body: Dynamics) -> Dynamics:
+        """The body with the torque of devices in h, with the opposite sign."""
+        if not self._assistance.HasValue(context):
+            return body
+        h = body.h.copy()
+        h[6 + self._to_actuators] -= self._assistance.Eval(context)
+        return body._replace(h=h)
 
     def _posture(self, reference: WalkingReference) -> Posture:
         """Rest posture with swinging arms and the toes of the reference."""

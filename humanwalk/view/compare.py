@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from humanwalk.measures.summary import Summary
+from humanwalk.measures.symmetry import symmetry_index
 from humanwalk.parameter_file import plain
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import Run
@@ -29,6 +30,11 @@ def _gait(summary: Summary, name: str) -> Any:
     return None if summary["gait"] is None else summary["gait"].get(name)
 
 
+def _index(of_feet: Mapping[str, float | None] | None) -> float | None:
+    """Symmetry index of a measure of both feet [%]."""
+    return symmetry_index(of_feet["right"], of_feet["left"]) if of_feet else None
+
+
 def _greatest(by_joint: Mapping[str, float | None]) -> float | None:
     return max((value for value in by_joint.values() if value is not None), default=None)
 
@@ -44,6 +50,9 @@ MEASURES: dict[str, tuple[str, Callable[[Summary], float | None]]] = {
     "step length [m]": (".3f", lambda s: _mean(_gait(s, "step_length_m"))),
     "step width [m]": (".3f", lambda s: _mean(_gait(s, "step_width_m"))),
     "stance, share of the stride": (".3f", lambda s: _mean(_gait(s, "stance_share"))),
+    "symmetry index of step length [%]": (".1f", lambda s: _index(_gait(s, "step_length_m"))),
+    "symmetry index of step time [%]": (".1f", lambda s: _index(_gait(s, "step_time_s"))),
+    "symmetry index of stance [%]": (".1f", lambda s: _index(_gait(s, "stance_share"))),
     "foot lift [m]": (".3f", lambda s: _mean(s["foot_lift_m"])),  # type: ignore[arg-type]
     "peak torque [N m]": (".0f", lambda s: _greatest(s["peak_torque_N_m"])),
     "cost of transport": (".3f", lambda s: s["cost_of_transport"]),

@@ -42,6 +42,7 @@ GROUPS: dict[str, Mapping[str, Curve]] = {
 """Curves by the heading of their table."""
 CURVE_HEADER = ("corr.", "diff.", "rms", "1 SD [%]", "2 SD [%]", "peak")
 MEASURE_HEADER = ("measure", "run", "human", "source")
+ASYMMETRY_HEADER = ("measure of a leg", "right", "left", "SI [%]")
 
 DECIMALS = {"m/s": 2, "m": 3, "1/min": 0, "": 2, "BW": 2, "deg": 1, "N m/kg": 2, "W/kg": 2, "s": 3}
 """Decimals in a table, by unit."""
@@ -57,6 +58,7 @@ NOTES = (
     "dimensionless speed, by which their group is chosen.",
     "Hip flexion and pelvic tilt are those of the plane through the iliac spines, which tilts 11 degrees forward in "
     "upright standing. Moments are internal: joint torques per body mass; powers are these times the joint's rate.",
+    "SI: symmetry index, 2 (right - left) / (right + left), of Robinson, Herzog and Nigg (1987); 0 for equal legs.",
     "CoP backward: greatest distance by which the center of pressure falls back under the foot from 10 to 55 % of the "
     "gait cycle.",
     "Cost of transport is the integral of all joints' |torque x rate| per weight and distance, which is not the "
@@ -109,6 +111,10 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
             }
             for measure in comparison.measures
         },
+        "asymmetries": {
+            name: {"unit": legs.unit, "right": legs.right, "left": legs.left, "symmetry_index_percent": legs.index}
+            for name, legs in comparison.asymmetries.items()
+        },
     }
 
 
@@ -126,7 +132,10 @@ def terminal_tables(comparison: Comparison) -> list[Table]:
     measures = Table(*MEASURE_HEADER, box=box.SIMPLE, caption=caption, caption_justify="left")
     for row in measure_rows(comparison):
         measures.add_row(*row)
-    return [*tables, measures]
+    legs = Table(*ASYMMETRY_HEADER, box=box.SIMPLE)
+    for row in asymmetry_rows(comparison):
+        legs.add_row(*row)
+    return [*tables, legs, measures]
 
 
 def write_report(run: Run, comparison: Comparison) -> Path:
@@ -145,6 +154,7 @@ def write_report(run: Run, comparison: Comparison) -> Path:
             paragraph(f"{run.scenario.description}. Compared strides: {strides}."),
             paragraph(score_text(comparison)),
             *(table((heading, *CURVE_HEADER), curve_rows(comparison, curves)) for heading, curves in GROUPS.items()),
+            table(ASYMMETRY_HEADER, asymmetry_rows(comparison)),
             table(MEASURE_HEADER, measure_rows(comparison)),
             numbered_notes(sources(comparison)),
             *(picture(figure, name) for name, figure in figures if figure is not None),
@@ -194,6 +204,15 @@ def measure_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
         else:
             low, high = format(people.low, form), format(people.high, form)
             yield *row, low if low == high else f"{low} to {high}", f"{cited.index(people.source) + 1}"
+
+
+def asymmetry_rows(comparison: Comparison) -> Iterator[tuple[str, ...]]:
+    """Rows under ASYMMETRY_HEADER."""
+    for name, legs in comparison.asymmetries.items():
+        form = f".{DECIMALS[legs.unit]}f"
+        right, left = (format(value, form) if np.isfinite(value) else "-" for value in (legs.right, legs.left))
+        label = f"{name} [{legs.unit}]" if legs.unit else name
+        yield label, right, left, "-" if legs.index is None else f"{legs.index:.1f}"
 
 
 def sources(comparison: Comparison) -> list[str]:

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.devices import AnkleProsthesis, HipExoskeleton
+from humanwalk.body.impairments import HipContracture, JointImpairment, ShortLeg, StiffKnee
 from humanwalk.body.loads import AnkleWeights, Backpack, Suitcase
 from humanwalk.body.subject import Subject
 from humanwalk.choices import CONTROLLERS
@@ -167,6 +170,35 @@ def test_the_body_is_scaled() -> None:
 def test_the_person_is_described() -> None:
     subject = changed(sex="female", age=8.0, mass=26.0, stature=1.28).subject
     assert subject == Subject(26.0, 1.28, "female", 8.0)
+
+
+def test_impairments_and_devices_are_described() -> None:
+    texts = ["stiff knee left 10 deg", "short_leg 3 cm", "hip contracture both stiffness 20 N m/rad, angle 0.2 unknown"]
+    assert changed(impairment=texts).subject.impairments == (
+        StiffKnee(math.radians(10.0), side="Left"),
+        ShortLeg(0.03),
+        HipContracture(0.2, 20.0, side="Both", known=False),
+    )
+    assert changed(impairment=["joint joint elbow, upper 90 deg"]).subject.impairments == (
+        JointImpairment("elbow", upper=math.radians(90.0)),
+    )
+    assert changed(device=["ankle prosthesis left", "hip exoskeleton 15 N m"]).subject.devices == (
+        AnkleProsthesis(side="Left"),
+        HipExoskeleton(15.0),
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("stif knee", "did you mean stiff_knee"),
+        ("short leg 3 km", "km is no unit of shortening; allowed: m or cm or mm"),
+        ("stiff knee bend 3", "bend 3 is not FIELD VALUE of stiff_knee, which has angle, play, side, known"),
+    ],
+)
+def test_an_impairment_that_cannot_be_read_is_refused(text: str, message: str) -> None:
+    with pytest.raises(ParameterError, match=re.escape(message)):
+        changed(impairment=[text])
 
 
 def test_loads_are_described() -> None:

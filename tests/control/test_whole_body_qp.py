@@ -8,11 +8,15 @@ import pytest
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import contact_spheres
+from humanwalk.body.devices import AnkleProsthesis
+from humanwalk.body.impairments import NO_TORQUE, JointImpairment, StiffKnee, WeakPlantarflexors
 from humanwalk.body.limbs import LEGS
+from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
-from humanwalk.control.whole_body_qp import JOINT_LIMIT_STIFFNESS, Posture, WholeBodyQp
+from humanwalk.control.whole_body_qp import JOINT_LIMIT_DAMPING, JOINT_LIMIT_STIFFNESS, Posture, WholeBodyQp
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
@@ -298,3 +302,54 @@ def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynami
     normal = terrain.axes(np.zeros(2))[2]
     assert normal @ acceleration < -1.0
     assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.1)
+
+
+def impaired(subject: Subject) -> tuple[BodyDynamics, WholeBodyQp]:
+    dynamics = BodyDynamics(body_plant(subject))
+    return dynamics, WholeBodyQp(dynamics, contact_spheres(subject.skeleton), PARAMETERS)
+
+
+def test_a_locked_knee_does_not_move_and_its_muscles_rest() -> None:
+    angle, rate = 0.24, 0.1
+    dynamics, qp = impaired(Subject(impairments=(StiffKnee(angle),)))
+    knee, v = qp.names.index(LEGS["Right"].knee), np.zeros(48)
+    v[6 + knee] = rate
+    body = body_at(dynamics, 0.5 * angle, v)
+    solution = qp.solve(body, reference_for(body), rest(qp))
+    assert solution is not None
+    assert solution.acceleration[6 + knee] == pytest.approx(-JOINT_LIMIT_DAMPING * rate, rel=1e-3)
+    assert solution.torque[knee] == 0.0
+    assert abs(solution.torque[qp.names.index(LEGS["Left"].knee)]) > 1.0
+
+
+@pytest.mark.parametrize("strength", [0.5, 0.1])
+def test_weak_muscles_deliver_no_more_than_their_strength(strength: float) -> None:
+    dynamics, qp = impaired(Subject(impairments=(WeakPlantarflexors(strength),)))
+    body = body_at(dynamics)
+    ahead = complex(body.com.position[0] + 0.15, body.com.position[1])
+    solution = qp.solve(body, reference_for(body, ahead), rest(qp))
+    assert solution is not None
+    for leg in LEGS.values():
+        assert abs(solution.torque[qp.names.index(leg.ankle)]) <= 200.0 * strength * (1.0 + 1e-6)
+
+
+def test_a_passive_spring_is_in_the_equations_of_motion() -> None:
+    stiffness, rest = 40.0, 0.05
+    healthy = BodyDynamics(body_plant(Subject()))
+    sprung = BodyDynamics(
+        body_plant(Subject(impairments=(JointImpairment("ankle", "Left", stiffness=stiffness, rest_angle=rest),)))
+    )
+    difference = body_at(sprung).h - body_at(healthy).h
+    place = healthy.joints.v[healthy.joints.names.index(LEGS["Left"].ankle)]
+    assert difference[place] == pytest.approx(stiffness * (0.12 - rest))
+    assert np.abs(np.delete(difference, place)).max() == 0.0
+
+
+def test_a_passive_ankle_carries_what_its_spring_delivers() -> None:
+    dynamics, qp = impaired(Subject(devices=(AnkleProsthesis(),)))
+    body = body_at(dynamics)
+    solution = qp.solve(body, reference_for(body), rest(qp))
+    assert solution is not None
+    assert abs(solution.torque[qp.names.index(LEGS["Right"].ankle)]) <= NO_TORQUE
+    # The other leg and the hips hold the center of mass.
+    assert solution.forces[:, 2].sum() == pytest.approx(9.81 * dynamics.mass, rel=0.02)

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from humanwalk.cli.main import app
 from humanwalk.measures.curves import CURVES
 from humanwalk.measures.signals import TIME
+from humanwalk.measures.symmetry import MEASURES_OF_LEGS
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.run.outcome import Outcome
@@ -26,6 +27,7 @@ from humanwalk.view.report import (
     GROUPS,
     MEASURE_HEADER,
     REPORT,
+    asymmetry_rows,
     compare_run,
     curve_rows,
     measure_rows,
@@ -78,6 +80,17 @@ def test_rows_have_value_human_range_and_source(make_run: Callable[..., Any]) ->
     # No value without a source, no source without a value.
     assert all((row[1] == "") == (row[2] == "") for row in rows.values())
     assert rows["moment, knee extension [N m/kg]"][1:] == ("", "")
+
+
+def test_both_legs_and_their_symmetry_index_have_a_row(make_run: Callable[..., Any]) -> None:
+    comparison = compare_run(make_run())
+    rows = {name.partition(" [")[0]: row for name, *row in asymmetry_rows(comparison)}
+    assert rows.keys() == MEASURES_OF_LEGS.keys()
+    for name, (right, left, index) in rows.items():
+        # Both legs of the made-up walk have the same motion.
+        if "-" not in (right, left, index) and "step" not in name:
+            assert abs(float(index)) < 10.0, name
+    assert to_json(comparison)["asymmetries"]["step time"]["symmetry_index_percent"] == pytest.approx(0.0, abs=1.0)
 
 
 def test_json_is_stride_by_stride(make_run: Callable[..., Any]) -> None:
