@@ -18,10 +18,10 @@ from humanwalk.body.subject import Subject
 from humanwalk.control.inverse_kinematics import LegKinematics
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.gait.normative import CYCLE
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.measures.curves import CURVES
-from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY

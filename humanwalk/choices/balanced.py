@@ -17,11 +17,12 @@ from humanwalk.body.upright import knee_flexions
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
+from humanwalk.choices.style import STYLES, NoStyle, Style
 from humanwalk.choices.world import World
 from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, choice, quantity
+from humanwalk.quantity import ParameterError, choice, quantity, tag_of
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Terrain
@@ -79,6 +80,9 @@ class BalancedController:
     whole_body: WholeBodyParameters = WholeBodyParameters()
     """Joint torques; values are for the reference body and scale with the subject."""
 
+    style: Style = choice(STYLES, NoStyle())
+    """Joint angles that the legs follow softly, beside steps and balance."""
+
     gains: CompliantGains = CompliantGains()
     """PD gains of the joints; values are for the reference body and scale with the subject."""
 
@@ -101,6 +105,10 @@ class BalancedController:
     def untested(self) -> tuple[str, ...]:
         return self.command.untested
 
+    @property
+    def followed_style(self) -> str:
+        return tag_of(STYLES, self.style)
+
     def fields_for_speed(self, speed: float) -> dict[str, Any]:
         """The points of the command."""
         return {"command.points": [asdict(point) for point in self.command.points_at_speed(speed)]}
@@ -114,13 +122,14 @@ class BalancedController:
         return first.time + time * self.planner.timing.weight_shift + ramp + time * SETTLING
 
     def fitted(self, subject: Subject) -> Self:
-        """The controller with planner, program and gains in the units of a subject's body."""
+        """The controller with planner, program, style and gains in the units of a subject's body."""
         scale = subject.scale
         return replace(
             self,
             planner=scaled(self.planner, scale),
             whole_body=scaled(self.whole_body, scale),
             gains=scaled(self.gains, scale),
+            style=scaled(self.style, scale),
         )
 
     def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
@@ -169,9 +178,10 @@ class BalancedController:
         )
         tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
         posture = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        style = fitted.style.task(world.subject, JointMap.of(world.model))
         controller = world.add(
             "controller",
-            WholeBodyController(world.model, world.subject.skeleton, tasks, posture, self.control_period),
+            WholeBodyController(world.model, world.subject.skeleton, tasks, posture, self.control_period, style),
             state=world.state,
             plan=planner.GetOutputPort("plan"),
         )

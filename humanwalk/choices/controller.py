@@ -57,6 +57,10 @@ class Controller(Protocol):
     def untested(self) -> tuple[str, ...]:
         """What is commanded beyond the tested range, one line each."""
 
+    @property
+    def followed_style(self) -> str | None:
+        """Tag of the joint angles that a walker on its own feet also follows; None for another controller."""
+
     def fields_for_speed(self, speed: float) -> dict[str, Any]:
         """Fields of the controller, by dotted name, with the values for another greatest forward speed [m/s].
 

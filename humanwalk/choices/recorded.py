@@ -51,7 +51,7 @@ class RecordedController:
         if not self.angles:
             raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it (--follow FILE)")
 
-    command = commanded_speed = None
+    command = commanded_speed = followed_style = None
 
     @property
     def physics(self) -> bool:

@@ -77,7 +77,7 @@ class ThesisController:
     """Time between two solutions of the inverse kinematics; 0.01 s is the thesis' time between two foot points."""
 
     physics = True
-    command = None
+    command = followed_style = None
 
     @property
     def commanded_speed(self) -> float:

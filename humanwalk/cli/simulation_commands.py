@@ -44,17 +44,22 @@ def walk(
         Path | None, typer.Option(help="YAML file: which column of the recording is which joint, and its unit.")
     ] = None,
     kinematic: Annotated[bool, typer.Option("--kinematic", help="Show the recording without physics.")] = False,
+    balanced: Annotated[
+        bool, typer.Option("--balanced", help="Walk the recording without external force: its angles are a style.")
+    ] = False,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, in real time.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
     checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
-    from humanwalk.cli.walk import file_name, follow_overrides, walk_and_write
+    from humanwalk.cli.walk import balanced_overrides, file_name, follow_overrides, walk_and_write
 
     recorded: dict[str, str] = {}
+    if balanced and (follow is None or kinematic):
+        raise ParameterError("--balanced: allowed: with --follow FILE and without --kinematic; name the recording")
     if follow is not None:
-        recorded = follow_overrides(follow, mapping, kinematic)
+        recorded = balanced_overrides(follow, mapping) if balanced else follow_overrides(follow, mapping, kinematic)
     elif kinematic:
         raise ParameterError("--kinematic: no recording; allowed: with --follow FILE; name the recording")
     elif mapping is not None:

@@ -14,6 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Column, Table
 
+from humanwalk.body.subject import Subject
+from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError
@@ -138,15 +140,42 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
         ParameterError: The recording cannot be read.
     """
     time = read_motion_table(recording).time
-    recorded = {"angles": str(recording.absolute()), "kinematic": kinematic}
-    if mapping is not None:
-        recorded["mapping"] = str(mapping.absolute())
+    recorded = _files(recording, mapping) | {"kinematic": kinematic}
     # JSON is YAML, and quotes any character in a path.
     return {
         "controller": json.dumps({"recorded": recorded}),
         "duration": repr(float(time[-1] - time[0])),
         "description": json.dumps(f"{recording.name}, followed{' without physics' if kinematic else ''}"),
     }
+
+
+def balanced_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
+    """Overrides of a scenario that walks a recording on its own feet: its angles as style, its speed and its steps.
+
+    Raises:
+        ParameterError: The recording cannot be read, or is not a walk.
+    """
+    style = RecordedStyle(**_files(recording, mapping))
+    gait = style.gait(Subject())
+    points = [{"time": 0.2, "forward": gait.speed}]
+    return {
+        "controller": json.dumps(
+            {
+                "balanced": {
+                    "command": {"points": points, "acceleration": 1.0},
+                    "planner": {"timing": {"step": gait.step}},
+                    "style": {"recorded": _files(recording, mapping)},
+                }
+            }
+        ),
+        "description": json.dumps(f"{recording.name}, walked without external force at {gait.speed:.2f} m/s"),
+    }
+
+
+def _files(recording: Path, mapping: Path | None) -> dict[str, Any]:
+    """Fields of a controller or a style that name a recording and its mapping."""
+    files = {"angles": str(recording.absolute())}
+    return files if mapping is None else files | {"mapping": str(mapping.absolute())}
 
 
 def write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,7 @@ from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.control.whole_body_contacts import EDGES, FORCE_UNIT, Contacts, Soles
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
-from humanwalk.control.whole_body_tasks import tasks
+from humanwalk.control.whole_body_tasks import Task, tasks
 from humanwalk.numerics import Array
 from humanwalk.walking.walking_reference import WalkingReference
 
@@ -119,9 +119,11 @@ class WholeBodyQp:
         torque_limits = np.concatenate((np.zeros(6), np.where(locked, LOCKED_TORQUE, self.limits)[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
 
-    def solve(self, body: Dynamics, reference: WalkingReference, posture: Posture) -> WholeBodySolution | None:
-        """The solution, or None if the solver finds none."""
-        program, prescribed, contacts = self.program(body, reference, posture)
+    def solve(
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, more: Iterable[Task] = ()
+    ) -> WholeBodySolution | None:
+        """The solution, or None if the solver finds none; see `program`."""
+        program, prescribed, contacts = self.program(body, reference, posture, more)
         solution = program.solution()
         if solution is None:
             return None
@@ -132,12 +134,18 @@ class WholeBodyQp:
         return WholeBodySolution(acceleration, forces, np.clip(torque[6:], -self.limits, self.limits))
 
     def program(
-        self, body: Dynamics, reference: WalkingReference, posture: Posture
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, more: Iterable[Task] = ()
     ) -> tuple[QuadraticProgram, Array, Contacts]:
         """The program at one state.
 
         Its unknowns are the accelerations of base, legs and spine, and the forces along the edges of the friction
         pyramids.
+
+        Args:
+            body: the body at this state.
+            reference: plan of the steps.
+            posture: desired angles.
+            more: tasks in addition to those of the plan.
 
         Returns:
             The program; the accelerations of the prescribed joints; the contacts.
@@ -148,7 +156,7 @@ class WholeBodyQp:
         desired, prescribed = desired[: m - 6], desired[m - 6 :]
         soles = self._soles.on(reference.ground, body)
 
-        J, a, w = tasks(body, soles, reference, p, self._passive_ankles)
+        J, a, w = tasks(body, soles, reference, p, self._passive_ankles, more)
         a -= J[:, m:] @ prescribed
         J = J[:, :m]
         WJ = w[:, None] * J

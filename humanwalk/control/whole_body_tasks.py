@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +60,7 @@ def tasks(
     reference: WalkingReference,
     p: WholeBodyParameters,
     passive_ankles: Collection[Side] = (),
+    more: Iterable[Task] = (),
 ) -> tuple[Array, Array, Array]:
     """All tasks at one state, row by row: J (rows, nv), desired J v' (rows,), weight (rows,).
 
@@ -69,6 +70,7 @@ def tasks(
         reference: what feet, center of mass and trunk should do.
         p: gains and weights.
         passive_ankles: sides without muscles at the ankle.
+        more: tasks in addition to those of the plan.
     """
     found = [
         *_center_of_mass(body, reference, p),
@@ -81,6 +83,7 @@ def tasks(
         is_steered = side not in passive_ankles
         state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side), is_steered)
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
+    found.extend(more)
     J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
     return np.concatenate(J), np.concatenate(acceleration), np.repeat(weight, [len(a) for a in acceleration])
 

@@ -1,1 +1,1 @@
-"""Desired motion of the feet in the thesis' walk: splines, foot paths, arc length, phases; no bodies, no Drake."""
+"""Desired motion of the feet in the thesis' walk, and human curves over the gait cycle; no bodies, no Drake."""

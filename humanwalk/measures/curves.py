@@ -16,8 +16,8 @@ import pyarrow as pa
 from humanwalk.body import Side
 from humanwalk.body.limbs import LEGS, Leg
 from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.gait.normative import CYCLE, Band, SpeedGroup, people
 from humanwalk.measures.events import FootEvents
-from humanwalk.measures.normative import CYCLE, Band, SpeedGroup, people
 from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
 from humanwalk.numerics import Array
 

@@ -1,6 +1,6 @@
 """Comparison with human gait, stride by stride: angles, moments and powers over the gait cycle, and single measures.
 
-People's curves are those of `humanwalk.measures.normative` at the dimensionless speed of the walk. Other measures have
+People's curves are those of `humanwalk.gait.normative` at the dimensionless speed of the walk. Other measures have
 human values where a source is known (`humanwalk.measures.walk_measures`).
 """
 
@@ -11,8 +11,8 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.body import Side
+from humanwalk.gait.normative import Band, SpeedGroup
 from humanwalk.measures.curves import CURVES, JOINTS, over_strides
-from humanwalk.measures.normative import Band, SpeedGroup
 from humanwalk.measures.signals import matrix
 from humanwalk.measures.symmetry import Asymmetry, asymmetries
 from humanwalk.measures.walk_measures import MEASURES, Measure, Walk
@@ -84,6 +84,7 @@ class Comparison:
         curves: agreement of each leg's strides by name of the curve in CURVES.
         measures: of steps, ground force, center of pressure, center of mass and effort.
         asymmetries: measures of both legs, by name.
+        style: tag of the joint angles that the walker follows; None for a controller without steps and balance.
     """
 
     strides: Mapping[Side, int]
@@ -92,6 +93,7 @@ class Comparison:
     curves: Mapping[str, Mapping[Side, Likeness]]
     measures: tuple[Measure, ...]
     asymmetries: Mapping[str, Asymmetry]
+    style: str | None = None
 
     def mean(self, curve: str, name: str) -> float:
         """Mean of an attribute of the likeness over the strides of both legs; those without a value do not count."""
@@ -135,6 +137,7 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
         curves=curves,
         measures=tuple(kind.of_walk(walk) for kind in MEASURES),
         asymmetries=asymmetries(walk),
+        style=scenario.controller.followed_style,
     )
 
 

@@ -40,6 +40,7 @@ class Summary(TypedDict):
     foot_line_error_m: OfFeet
     steps: int | None
     external_support: bool
+    style: str | None
     support_force_rms_N: float | None
     support_torque_rms_N_m: float | None
     pelvis_tracking_rms_m: float | None
@@ -100,6 +101,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
         "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,
         "external_support": supported,
+        "style": controller.followed_style,
         "support_force_rms_N": _rms_norm(matrix(signals, forces), steady) if supported else 0.0,
         "support_torque_rms_N_m": _rms_norm(matrix(signals, torques), steady) if supported else 0.0,
         "pelvis_tracking_rms_m": pelvis_tracking(signals, steady),

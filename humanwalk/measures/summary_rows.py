@@ -39,6 +39,7 @@ def _figures(summary: Mapping[str, Any]) -> Iterator[tuple[str, Any, str, str]]:
     if summary["external_support"]:
         yield f"{EXTERNAL_SUPPORT} force, rms", summary["support_force_rms_N"], ".0f", "N"
         yield f"{EXTERNAL_SUPPORT} torque, rms", summary["support_torque_rms_N_m"], ".0f", "N m"
+    yield "style", summary["style"], "", ""
     yield "QP failures", summary["qp_failures"], "d", ""
     if summary["physics"]:
         name, torque = max(summary["peak_torque_N_m"].items(), key=lambda item: item[1] or 0.0)

@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from humanwalk.body import SIDES, Side, human
 from humanwalk.body.limbs import other_side
+from humanwalk.gait.normative import CYCLE, SpeedGroup, dimensionless_speed, speed_group
 from humanwalk.measures.center_of_pressure import backward_travels, cop_paths
 from humanwalk.measures.curves import ANGLES, CURVES, over_strides
 from humanwalk.measures.effort import cost_of_transport
@@ -28,7 +29,6 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
-from humanwalk.measures.normative import CYCLE, SpeedGroup, dimensionless_speed, speed_group
 from humanwalk.measures.signals import TIME, UNITS
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY

@@ -7,7 +7,6 @@ from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
-from humanwalk.body.limbs import other_side
 from humanwalk.body.upright import upright
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Ground
@@ -15,7 +14,7 @@ from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_planner import StepPlanner
-from humanwalk.walking.walking_reference import BodyState, FootTask, Phase, WalkingReference
+from humanwalk.walking.walking_reference import BodyState, FootTask, WalkingReference
 
 POINTS = ("zmp", "dcm", "dcm_reference", "foothold")
 """Points of the reference in the output `balance`."""
@@ -112,19 +111,12 @@ class GaitPlanner(LeafSystem):
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)
         state.get_mutable_abstract_state(int(self._reference)).set_value(reference)
         for group, values in (
-            (self._phase, self._phases(memory.stance, reference)),
+            (self._phase, [reference.gait_phase(side) for side in SIDES]),
             (self._schedule, [float(reference.foot(side).task is not FootTask.SWING) for side in SIDES]),
             (self._balance, _balance(reference)),
         ):
             state.get_mutable_discrete_state(group).SetFromVector(values)
         return EventStatus.Succeeded()
-
-    def _phases(self, stance: Side, reference: WalkingReference) -> list[float]:
-        if reference.phase not in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT):
-            return [0.0, 0.0]
-        half = min(0.5 * reference.phase_time / reference.step_duration, 0.5)
-        phases = {stance: half, other_side(stance): half + 0.5}
-        return [phases[side] for side in SIDES]
 
 
 def _balance(reference: WalkingReference) -> list[float]:

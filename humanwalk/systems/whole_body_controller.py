@@ -10,6 +10,7 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Leaf
 from humanwalk.body import SIDES, Skeleton, contact_spheres
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
+from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.systems.signal import Signal
@@ -47,6 +48,7 @@ class WholeBodyController(LeafSystem):
         parameters: WholeBodyParameters,
         posture: Mapping[str, float],
         period: float,
+        style: JointStyle | None = None,
     ) -> None:
         """Make the controller.
 
@@ -56,11 +58,12 @@ class WholeBodyController(LeafSystem):
             parameters: tasks and limits.
             posture: joint angles [rad] by name around which arms and spine are held; 0 if not named.
             period: time between updates [s].
+            style: joint angles that the legs follow softly.
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
         self._qp = WholeBodyQp(self._dynamics, contact_spheres(skeleton), parameters)
-        self._period = period
+        self._period, self._style = period, style
         self._hold = parameters.hold
         joints, names = self._dynamics.joints, self._qp.names
         n = len(names)
@@ -93,7 +96,8 @@ class WholeBodyController(LeafSystem):
         body = self._assisted(context, self._dynamics.at(self._state.Eval(context)))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
-        solution = self._qp.solve(body, reference, posture)
+        style = self._style.tasks(body, reference) if self._style is not None else ()
+        solution = self._qp.solve(body, reference, posture, style)
 
         _, failures, in_a_row = context.get_discrete_state(self._status).value()
         if solution is not None:

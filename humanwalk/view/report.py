@@ -9,9 +9,9 @@ import numpy as np
 from rich import box
 from rich.table import Column, Table
 
+from humanwalk.gait.normative import SPEED_GROUPS, is_measured
 from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS, POWERS, Curve
 from humanwalk.measures.human_likeness import MIN_STRIDES, SCORED, Comparison, compare, pooled
-from humanwalk.measures.normative import SPEED_GROUPS, is_measured
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
@@ -66,6 +66,14 @@ NOTES = (
 )
 
 
+STYLE_NOTE = "The walker follows the joint angles of a recording (style)."
+STYLE_NOTES = {
+    "none": "No style: the walker follows no joint angles.",
+    "normative": "With a style: the walker follows the joint angles with which it is compared.",
+}
+"""What a score is worth, by the style of the walker."""
+
+
 def compare_run(run: Run) -> Comparison:
     """Compare a run with human gait.
 
@@ -93,6 +101,7 @@ def to_json(comparison: Comparison) -> dict[str, Any]:
         "strides": {side.lower(): count for side, count in comparison.strides.items()},
         "dimensionless_speed": comparison.dimensionless_speed,
         "people": comparison.group,
+        "style": comparison.style,
         "score": comparison.score,
         "distance_sd": comparison.distance,
         "curves": {
@@ -170,10 +179,11 @@ def score_text(comparison: Comparison) -> str:
     speed, group = comparison.dimensionless_speed, f"{comparison.group} speed, {low:g} to {high:g}"
     if not is_measured(speed):
         group += ": the nearest group that was measured"
+    style = "" if comparison.style is None else f" {STYLE_NOTES.get(comparison.style, STYLE_NOTE)}"
     return (
         f"Score {100.0 * comparison.score:.0f} %: share of the cycle within 1 SD of people's mean, averaged over "
         f"{len(SCORED)} curves; {comparison.distance:.1f} SD off on average. Dimensionless speed {speed:.2f}; compared "
-        f"with people at {group}."
+        f"with people at {group}.{style}"
     )
 
 

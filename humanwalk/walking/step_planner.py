@@ -121,7 +121,7 @@ class StepPlanner:
         support = support_motion(state, 0.0, self.frequency)
         next_state, com_height = self._com_height(state, 0.0, math.inf, support)
         next_state = next_state._replace(elapsed=state.elapsed + self._period)
-        return next_state, self._reference(state, body, balance, com_height, support, feet, state.midpoint)
+        return next_state, self._reference(state, body, balance, com_height, support, feet, state.midpoint, 0.0)
 
     def _step(
         self, state: PlannerState, body: BodyState, command: Command, dcm: complex
@@ -185,7 +185,9 @@ class StepPlanner:
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
         next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)
         balance = Balance(zmp, pivot, dcm, dcm_reference)
-        return next_state, self._reference(state, body, balance, com_height, support, feet, foothold.position)
+        return next_state, self._reference(
+            state, body, balance, com_height, support, feet, foothold.position, command.forward
+        )
 
     def _clamp(self, state: PlannerState, zmp: complex, heel_is_up: bool = False) -> complex:
         """The zero-moment point, limited to the base of support."""
@@ -237,6 +239,7 @@ class StepPlanner:
         support: SupportMotion,
         feet: dict[Side, FootReference],
         foothold: complex,
+        speed: float,
     ) -> WalkingReference:
         """The reference, with pelvis, chest and arms that rotate with the legs."""
         rotation, timing = self.parameters.rotation, state.timing
@@ -261,5 +264,7 @@ class StepPlanner:
             shoulder_flexion=((arm, arm_rate), (-arm, -arm_rate)),
             foothold=foothold,
             step_duration=timing.step,
+            stance=state.stance,
+            speed=speed,
             ground=state.ground,
         )

@@ -175,6 +175,8 @@ class WalkingReference:
         shoulder_flexion: Angle and rate, of the right and of the left shoulder [rad, rad/s].
         foothold: Where the ankle of the swinging foot will be [m].
         step_duration: From touchdown to touchdown of the other foot [s].
+        stance: The stance foot of the step.
+        speed: Commanded forward speed of the step [m/s].
         ground: What is known of the ground.
     """
 
@@ -193,6 +195,8 @@ class WalkingReference:
     shoulder_flexion: tuple[tuple[float, float], tuple[float, float]]
     foothold: complex
     step_duration: float = math.inf
+    stance: Side = "Left"
+    speed: float = 0.0
     ground: Ground = Plane()
 
     def __deepcopy__(self, memo: object) -> Self:
@@ -202,6 +206,18 @@ class WalkingReference:
     def foot(self, side: Side) -> FootReference:
         """The foot of a side."""
         return self.right if side == "Right" else self.left
+
+    @property
+    def is_stepping(self) -> bool:
+        """Whether the walker is in double or single support of a step."""
+        return self.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+
+    def gait_phase(self, side: Side) -> float:
+        """Phase of the gait cycle of a foot: 0 at its touchdown, 1 at the next one; 0 in standing."""
+        if not self.is_stepping:
+            return 0.0
+        half = min(0.5 * self.phase_time / self.step_duration, 0.5)
+        return half if side == self.stance else half + 0.5
 
 
 def com_acceleration(com: complex, pivot: complex, com_height: float, vertical_acceleration: float) -> complex:

@@ -1,14 +1,12 @@
 """The command line: files, output and errors."""
 
 import json
-import logging
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -20,34 +18,13 @@ from humanwalk.bench import measure
 from humanwalk.bench.result import read_result
 from humanwalk.choices.contact import HydroelasticContact
 from humanwalk.cli.common import INSPECT, SHOW, SIMULATE
-from humanwalk.cli.main import app, run_command
+from humanwalk.cli.main import app
 from humanwalk.cli.walk import program, summary_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
 
 COMMANDS = {name.name or name.callback.__name__ for name in app.registered_commands}
-
-
-@pytest.fixture
-def humanwalk(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> Iterator[Any]:
-    """Runs the command line in an empty folder; gives exit code, output and errors."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-    level = logging.getLogger("drake").level
-
-    def run(*arguments: object) -> Any:
-        monkeypatch.setattr(sys, "argv", ["humanwalk", *map(str, arguments)])
-        code = 0
-        try:
-            run_command()
-        except SystemExit as end:
-            code = end.code or 0  # type: ignore[assignment]
-        captured = capfd.readouterr()
-        return code, captured.out, captured.err
-
-    yield run
-    logging.getLogger("drake").setLevel(level)
 
 
 @pytest.fixture
@@ -158,6 +135,7 @@ def test_table_of_a_run_omits_what_it_does_not_have() -> None:
         "lateral_drift_m": 0.0,
         "path_deviation_m": None,
         "external_support": False,
+        "style": None,
         "physics": False,
         "realtime_factor": 1.0,
     }
@@ -206,6 +184,7 @@ def test_walk_writes_its_files(humanwalk: Any, tmp_path: Path) -> None:
         "steps",
         "support_force_rms_N",
         "external_support",
+        "style",
         "peak_torque_N_m",
         "tracking_error_rad",
         "cost_of_transport",

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
+from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import ANGLES, CURVES, JOINTS, over_strides
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
 from humanwalk.measures.human_likeness import SCORED, Likeness, compare, pooled
-from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.signals import TIME, unit_of
 from humanwalk.measures.walk_measures import (
     MEASURES,

@@ -69,6 +69,7 @@ def test_summary_has_the_documented_keys(columns: tuple[str, ...], joints: Joint
         "steps",
         "support_force_rms_N",
         "external_support",
+        "style",
         "peak_torque_N_m",
         "tracking_error_rad",
         "cost_of_transport",

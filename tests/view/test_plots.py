@@ -12,8 +12,8 @@ import pytest
 from matplotlib.lines import Line2D
 from PIL import Image, ImageFilter
 
+from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import ANGLES
-from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.walk_measures import Walk
 from humanwalk.quantity import ParameterError

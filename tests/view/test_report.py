@@ -5,6 +5,7 @@ import html
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ from humanwalk.view.report import (
     compare_run,
     curve_rows,
     measure_rows,
+    score_text,
     sources,
     to_json,
     write_report,
@@ -207,3 +209,14 @@ def test_failed_write_keeps_the_previous_page(make_run: Callable[..., Any], monk
         write_report(run, comparison)
     assert (run.path / REPORT).read_text() == "before"
     assert [path.name for path in run.path.iterdir() if path.name.startswith(".")] == []
+
+
+@pytest.mark.parametrize(
+    "style, note",
+    [(None, None), ("none", "No style"), ("normative", "angles with which it is compared"), ("recorded", "recording")],
+)
+def test_a_score_names_the_style(make_run: Callable[..., Any], style: str | None, note: str | None) -> None:
+    comparison = replace(compare_run(make_run()), style=style)
+    assert to_json(comparison)["style"] == style
+    assert ("style" in score_text(comparison).lower()) == (note is not None)
+    assert note is None or note in score_text(comparison)

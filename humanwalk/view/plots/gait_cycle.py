@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
+from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import ANGLES, CURVES, JOINTS, Curve, over_strides
-from humanwalk.measures.normative import CYCLE
 from humanwalk.measures.walk_measures import Walk
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (

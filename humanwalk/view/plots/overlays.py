@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
+from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import ANGLES, Curve, over_strides
 from humanwalk.measures.events import events_of
-from humanwalk.measures.normative import CYCLE
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.gait.normative import SPEED_GROUPS, dimensionless_speed, is_measured, speed_group
 from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS
-from humanwalk.measures.normative import SPEED_GROUPS, dimensionless_speed, is_measured, speed_group
 
 
 @pytest.mark.parametrize("group", SPEED_GROUPS)

@@ -1,0 +1,86 @@
+"""Styles of the balanced walk: whether hips, knees and ankles also follow given angles over the gait cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Protocol
+
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.body.subject import Subject
+from humanwalk.control.joint_style import JointStyle
+from humanwalk.control.whole_body_parameters import TaskGains, critical
+from humanwalk.motion.followed import followed_motion
+from humanwalk.motion.gait_curves import normative_curves
+from humanwalk.motion.recorded_motion import MotionMapping
+from humanwalk.motion.recorded_strides import RecordedGait, recorded_gait
+from humanwalk.parameter_file import load_as
+from humanwalk.quantity import ParameterError, file_path
+from humanwalk.terrain import Plane
+
+
+class Style(Protocol):
+    """A style of the balanced walk: a dataclass whose fields are those of its tag."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
+        """The task for a subject; None without a style.
+
+        Raises:
+            ParameterError: the angles cannot be used.
+        """
+
+
+@dataclass(frozen=True)
+class NoStyle:
+    """Steps and balance alone determine the angles."""
+
+    def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
+        return None
+
+
+@dataclass(frozen=True)
+class NormativeStyle:
+    """Angles of people at the same dimensionless speed: the curves that the walk is scored with."""
+
+    gains: TaskGains = critical(300.0, 5.0)
+
+    def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
+        return JointStyle(joints, normative_curves(subject.skeleton.hip_height, PELVIC_TILT), self.gains)
+
+
+@dataclass(frozen=True)
+class RecordedStyle:
+    """Angles of the mean stride of a recording."""
+
+    angles: str = file_path()
+    """A .mot, .sto or .csv file with joint angles; its path counts from the scenario's folder."""
+
+    mapping: str = file_path()
+    """A YAML file (`MotionMapping`) that assigns columns to joints and gives their unit; empty: by name."""
+
+    gains: TaskGains = critical(300.0, 5.0)
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError without a recording."""
+        if not self.angles:
+            raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it")
+
+    def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
+        return JointStyle(joints, self.gait(subject).curves, self.gains)
+
+    def gait(self, subject: Subject) -> RecordedGait:
+        """The recorded walk of a subject.
+
+        Raises:
+            ParameterError: the recording or its mapping cannot be used, or is not a walk.
+        """
+        mapping = load_as(MotionMapping, Path(self.mapping)) if self.mapping else MotionMapping()
+        motion = followed_motion(Path(self.angles), mapping, subject, Plane(), ease_in=0.0)
+        return recorded_gait(motion, subject, self.angles)
+
+
+STYLES: dict[str, type[Style]] = {"none": NoStyle, "normative": NormativeStyle, "recorded": RecordedStyle}
+"""Styles by tag."""

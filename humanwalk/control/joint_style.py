@@ -1,0 +1,51 @@
+"""A style: a soft task that hips, knees and ankles follow given angles over the gait cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from humanwalk.body import SIDES
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
+from humanwalk.control.body_dynamics import Dynamics
+from humanwalk.control.whole_body_parameters import TaskGains
+from humanwalk.control.whole_body_tasks import Task
+from humanwalk.motion.gait_curves import GaitCurves, styled_joints
+from humanwalk.walking.walking_reference import WalkingReference
+
+
+class JointStyle:
+    """Tasks of the whole-body program: sagittal joint angles over the gait cycle of each leg.
+
+    The phase is that of the step planner, so that the angles follow the steps, not the steps the angles. Below the
+    lowest speed of the curves the weight decreases with the speed; in standing there is no task.
+    """
+
+    def __init__(self, joints: JointMap, curves: GaitCurves, gains: TaskGains) -> None:
+        """Make the tasks.
+
+        Args:
+            joints: Places of the joints in the positions and velocities of the plant.
+            curves: Angles over the gait cycle.
+            gains: Of the task of each leg.
+        """
+        self._curves, self._gains = curves, gains
+        places = {side: [joints.names.index(name) for name in styled_joints(LEGS[side])] for side in SIDES}
+        self._q = {side: joints.q[place] for side, place in places.items()}
+        self._v = {side: joints.v[place] for side, place in places.items()}
+
+    def tasks(self, body: Dynamics, reference: WalkingReference) -> Iterator[Task]:
+        """The task of each leg at one state; none in standing or at a speed that is not forward."""
+        gains = self._gains
+        share = min(max(reference.speed, 0.0) / self._curves.lowest_speed, 1.0)
+        if not reference.is_stepping or share == 0.0:
+            return
+        phase_rate = 0.5 / reference.step_duration
+        for side in SIDES:
+            motion = self._curves.at(side, reference.gait_phase(side), reference.speed)
+            q, v = body.q[self._q[side]], body.v[self._v[side]]
+            desired = phase_rate**2 * motion.curvature
+            desired += gains.stiffness * (motion.angle - q) + gains.damping * (phase_rate * motion.slope - v)
+            yield Task(np.eye(body.v.size)[self._v[side]], desired, share * gains.weight)

@@ -1,0 +1,57 @@
+"""A recording walked on its own feet: its speed and steps are commanded, its angles are a style."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from humanwalk.body import SIDES, human
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.motion.gait_curves import normative_curves, styled_joints
+from humanwalk.run.folder import Run
+
+SPEED, STEP = 0.8, 0.6
+QUICK = ("--no-plots", "--no-replay")
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """Four seconds of people's curves with the path of the pelvis, as a table."""
+    time = np.arange(0.0, 4.0, 0.02)
+    curves = normative_curves(human().hip_height, PELVIC_TILT)
+    columns = {"time": time, "pelvis_tx": SPEED * time, "pelvis_ty": 0.0 * time + 0.93, "pelvis_tz": 0.0 * time}
+    for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
+        angles = np.array([curves.at(side, t / (2.0 * STEP) + offset, SPEED).angle for t in time])
+        columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
+        columns |= {f"{joint}.angle_rad": 0.0 * time for joint in (*LEGS[side].hip[1:],)}
+    path = tmp_path / "trial.csv"
+    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
+    return path
+
+
+def test_its_speed_and_steps_are_commanded_and_nothing_supports_it(
+    humanwalk: Any, tmp_path: Path, recording: Path
+) -> None:
+    code, _, errors = humanwalk(
+        "walk", "--follow", str(recording), "--balanced", "--duration", "0.05", "-o", "walked", *QUICK
+    )
+    assert code == 0, errors
+    run = Run.open(tmp_path / "walked")
+    controller: Any = run.scenario.controller
+    assert run.summary["style"] == "recorded"
+    assert run.summary["external_support"] is False
+    assert controller.command.points[0].forward == pytest.approx(SPEED, abs=0.01)
+    assert controller.planner.timing.step == pytest.approx(STEP, abs=0.01)
+    recording.unlink()
+    assert humanwalk("reproduce", "walked")[0] == 0
+
+
+@pytest.mark.parametrize("options", [("--balanced",), ("--follow", "trial.csv", "--kinematic", "--balanced")])
+def test_without_a_recording_or_without_physics_nothing_can_be_balanced(
+    humanwalk: Any, recording: Path, options: tuple[str, ...]
+) -> None:
+    code, _, errors = humanwalk("walk", *options, *QUICK)
+    assert code != 0
+    assert "--balanced" in errors

@@ -1,0 +1,62 @@
+"""A recorded walk has its own speed, step duration and mean stride."""
+
+import numpy as np
+import pytest
+
+from humanwalk.body import SIDES
+from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.subject import Subject
+from humanwalk.motion.gait_curves import normative_curves, styled_joints
+from humanwalk.motion.recorded_motion import RecordedMotion
+from humanwalk.motion.recorded_strides import recorded_gait
+from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError
+from humanwalk.sides import Side
+
+SUBJECT = Subject()
+CURVES = normative_curves(SUBJECT.skeleton.hip_height, PELVIC_TILT)
+SPEED, STEP = 0.9, 0.58
+
+
+def recording(duration: float = 5.0, speed: float = SPEED) -> RecordedMotion:
+    """People's curves at a speed, the right touchdown at 0.2 s."""
+    time = np.arange(0.0, duration, 0.01)
+    joints = JointMap.of(kinematics_plant(SUBJECT))
+    angles: Array = np.zeros((time.size, len(joints.names)))
+    for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
+        phase = (time - 0.2) / (2.0 * STEP) + offset
+        columns = [joints.names.index(name) for name in styled_joints(LEGS[side])]
+        angles[:, columns] = [CURVES.at(side, value, SPEED).angle for value in phase]
+    path = np.column_stack((speed * time, 0.0 * time, 0.0 * time + 0.93))
+    return RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0)
+
+
+def test_speed_and_step_are_those_of_the_recording() -> None:
+    gait = recorded_gait(recording(), SUBJECT, "trial")
+    assert gait.speed == pytest.approx(SPEED, abs=1e-3)
+    assert gait.step == pytest.approx(STEP, abs=0.005)
+    assert gait.curves.lowest_speed == gait.speed
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_the_mean_stride_begins_at_touchdown(side: Side) -> None:
+    """People's foot is farthest ahead of the pelvis 2 to 3 % of the cycle before touchdown."""
+    gait = recorded_gait(recording(), SUBJECT, "trial")
+    for phase in (0.1, 0.45, 0.8):
+        errors = [
+            np.abs(gait.curves.at(side, phase, SPEED).angle - CURVES.at(side, phase - lead, SPEED).angle).max()
+            for lead in (0.01, 0.02, 0.03, 0.04)
+        ]
+        assert min(errors) < np.radians(2.5)
+
+
+@pytest.mark.parametrize(
+    "motion, message", [(recording(1.0), "touchdowns of the"), (recording(speed=-SPEED), "the pelvis moves at -0.9")]
+)
+def test_what_is_not_a_walk_is_refused_in_one_line(motion: RecordedMotion, message: str) -> None:
+    with pytest.raises(ParameterError, match=message) as caught:
+        recorded_gait(motion, SUBJECT, "trial")
+    assert "\n" not in str(caught.value)
