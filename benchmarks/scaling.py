@@ -28,7 +28,7 @@ from humanwalk.bench.cost import TimedWalk, in_turns
 from humanwalk.bench.measure import ONE_THREAD
 from humanwalk.bench.result import machine
 from humanwalk.body import contact_spheres, sdf
-from humanwalk.body.contact import POINT_STIFFNESS, ContactSphere
+from humanwalk.body.contact import ContactSphere
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.files import write_text
@@ -104,11 +104,10 @@ def add_human(plant: MultibodyPlant, subject: Subject, across: int) -> ModelInst
                 found.append(replace(medial, name=f"{medial.name}_{i}", center=tuple(center)))
         return tuple(found)
 
-    with (
-        patch.object(sdf, "contact_spheres", denser),
-        patch.object(sdf, "POINT_STIFFNESS", 2 * POINT_STIFFNESS / across),
-    ):
-        text = sdf.to_sdf(subject.skeleton)
+    body = subject.skeleton
+    softer = replace(body.flesh, sole_stiffness=2 * body.flesh.sole_stiffness / across)
+    with patch.object(sdf, "contact_spheres", denser):
+        text = sdf.to_sdf(replace(body, flesh=softer))
     (instance,) = Parser(plant).AddModelsFromString(text, "sdf")
     return instance
 

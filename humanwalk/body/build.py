@@ -18,6 +18,7 @@ from humanwalk.body.growth import ADULT_AGE
 from humanwalk.body.regions import ANKLE_HEIGHT, TRUNK, WIDTHS, Region, Regions, regions
 from humanwalk.body.shapes import Measured, Vector3
 from humanwalk.body.skeleton import REFERENCE_MASS, REFERENCE_STATURE, Segment, Skeleton
+from humanwalk.body_units import BodyScale, scaled
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.sides import SIDES, Side
@@ -156,6 +157,7 @@ def person(sex: Sex, segments: Regions) -> Skeleton:
         root_height=max(hips),
         raised=(max(hips) - hips[0], max(hips) - hips[1]),
         long_hair=sex == "female",
+        flesh=scaled(reference.flesh, BodyScale(length_factor, mass_factor)),
     )
     fitted: dict[str, Segment] = {}
     for region, center in _centers(body, segments).items():

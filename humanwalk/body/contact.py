@@ -21,15 +21,6 @@ HYDRO_SET = "_hydro_"
 
 FRICTION = 0.7
 """Coulomb coefficient of the soles, static and dynamic: that of two soles on each other (thesis 2.5)."""
-DISSIPATION = 1.0
-"""Hunt-Crossley dissipation [s/m] (our choice)."""
-RELAXATION_TIME = 0.02
-"""Relaxation time of the linear Kelvin-Voigt law that Drake's SAP solver uses [s] (our choice)."""
-POINT_STIFFNESS = 2.0e5
-"""Point-contact stiffness of one sphere [N/m] (our choice): in quiet standing twelve spheres sink 0.3 mm into rigid
-ground. With the thesis' normal stiffness of 0 they would sink at 1.9 m/s (erratum E8)."""
-HYDRO_MODULUS = 2.0e7
-"""Hydroelastic modulus of the soles [Pa] (our choice); the body tips over below 1e7 Pa."""
 HYDRO_RESOLUTION = 0.05
 """Mesh resolution hint of the soles [m]; Drake ignores it for boxes."""
 

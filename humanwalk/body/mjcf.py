@@ -6,7 +6,7 @@ SDF model. Torque limits are the control ranges of the motors.
 
 import xml.etree.ElementTree as ET
 
-from humanwalk.body.contact import FRICTION, RELAXATION_TIME, contact_spheres
+from humanwalk.body.contact import FRICTION, contact_spheres
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
 from humanwalk.body.skeleton import Joint, Segment, Skeleton
@@ -39,7 +39,8 @@ def to_mjcf(skeleton: Skeleton, look: Look = "person") -> str:
         {"timestep": "0.001", "integrator": "implicitfast", "cone": "elliptic", "gravity": numbers((0, 0, -GRAVITY))},
     )
     default = ET.SubElement(mujoco, "default")
-    friction = {"friction": numbers((FRICTION, 0, 0)), "condim": "3", "solref": numbers((RELAXATION_TIME, 1))}
+    reference = numbers((skeleton.flesh.sole_relaxation_time, 1))
+    friction = {"friction": numbers((FRICTION, 0, 0)), "condim": "3", "solref": reference}
     ET.SubElement(default, "geom", friction)
     world = ET.SubElement(mujoco, "worldbody")
     ground = {"name": "ground", "type": "plane", "size": "0 0 1", "contype": "1", "conaffinity": "0"}

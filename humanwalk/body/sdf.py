@@ -9,17 +9,14 @@ from typing import Literal
 
 from humanwalk.body.bones import bones
 from humanwalk.body.contact import (
-    DISSIPATION,
     FRICTION,
-    HYDRO_MODULUS,
     HYDRO_RESOLUTION,
-    POINT_STIFFNESS,
-    RELAXATION_TIME,
     ContactBox,
     ContactSphere,
     contact_boxes,
     contact_spheres,
 )
+from humanwalk.body.flesh import Flesh
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.shapes import Vector3
 from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
@@ -66,8 +63,8 @@ def to_sdf(skeleton: Skeleton, look: Look = "person") -> str:
             _add_pose(link, inboard.origin).set("relative_to", inboard.parent)
         link.append(_inertial(segment))
         link.extend(_visual(look) for look in looks if look.body == segment.name)
-        link.extend(_sphere_collision(s) for s in spheres if s.body == segment.name)
-        link.extend(_box_collision(b) for b in boxes if b.body == segment.name)
+        link.extend(_sphere_collision(s, skeleton.flesh) for s in spheres if s.body == segment.name)
+        link.extend(_box_collision(b, skeleton.flesh) for b in boxes if b.body == segment.name)
         if isinstance(inboard, Joint):
             model.append(_revolute(inboard))
         elif isinstance(inboard, Weld):
@@ -137,21 +134,23 @@ def _visual(look: Visual) -> ET.Element:
     return visual
 
 
-def _sphere_collision(sphere: ContactSphere) -> ET.Element:
-    stiffness = {"drake:point_contact_stiffness": number(POINT_STIFFNESS)}
-    return _collision(sphere, "sphere", {"radius": number(sphere.radius)}, stiffness)
+def _sphere_collision(sphere: ContactSphere, flesh: Flesh) -> ET.Element:
+    stiffness = {"drake:point_contact_stiffness": number(flesh.sole_stiffness)}
+    return _collision(sphere, "sphere", {"radius": number(sphere.radius)}, flesh, stiffness)
 
 
-def _box_collision(box: ContactBox) -> ET.Element:
+def _box_collision(box: ContactBox, flesh: Flesh) -> ET.Element:
     compliant = {
         "drake:compliant_hydroelastic": None,
-        "drake:hydroelastic_modulus": number(HYDRO_MODULUS),
+        "drake:hydroelastic_modulus": number(flesh.sole_modulus),
         "drake:mesh_resolution_hint": number(HYDRO_RESOLUTION),
     }
-    return _collision(box, "box", {"size": numbers(box.size)}, compliant)
+    return _collision(box, "box", {"size": numbers(box.size)}, flesh, compliant)
 
 
-def _collision(shape: ContactSphere | ContactBox, primitive: str, size: Texts, properties: Texts) -> ET.Element:
+def _collision(
+    shape: ContactSphere | ContactBox, primitive: str, size: Texts, flesh: Flesh, properties: Texts
+) -> ET.Element:
     collision = ET.Element("collision", {"name": shape.name})
     _add_pose(collision, shape.center)
     _add(ET.SubElement(ET.SubElement(collision, "geometry"), primitive), size)
@@ -159,8 +158,8 @@ def _collision(shape: ContactSphere | ContactBox, primitive: str, size: Texts, p
     common = {
         "drake:mu_static": friction,
         "drake:mu_dynamic": friction,
-        "drake:hunt_crossley_dissipation": number(DISSIPATION),
-        "drake:relaxation_time": number(RELAXATION_TIME),
+        "drake:hunt_crossley_dissipation": number(flesh.sole_dissipation),
+        "drake:relaxation_time": number(flesh.sole_relaxation_time),
     }
     _add(ET.SubElement(collision, "drake:proximity_properties"), {**common, **properties})
     return collision

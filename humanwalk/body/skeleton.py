@@ -13,8 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
+from humanwalk.body.flesh import Flesh
 from humanwalk.body.shapes import Shape, Vector3
 from humanwalk.body.visual import Visual
+from humanwalk.body_units import BodyScale, scaled
 from humanwalk.numerics import Array
 from humanwalk.quantity import require_in_range
 from humanwalk.sides import SIDES, Side
@@ -173,6 +175,7 @@ class Skeleton:
         root_height: Height of the root frame in neutral standing [m].
         raised: Height of the soles above the ground in neutral standing, right and left [m]: 0 but for a shorter leg.
         long_hair: Whether the look `person` has long hair.
+        flesh: What gives way in contact.
     """
 
     segments: tuple[Segment, ...]
@@ -181,6 +184,7 @@ class Skeleton:
     root_height: float
     raised: tuple[float, float] = (0.0, 0.0)
     long_hair: bool = False
+    flesh: Flesh = Flesh()
 
     def __post_init__(self) -> None:
         """Check that the segments form a tree.
@@ -282,7 +286,7 @@ class Skeleton:
         """Return the skeleton with another body mass [kg] and stature [m].
 
         All lengths are multiplied by one factor and all masses by another; inertias are then proportional to m L2,
-        torque limits to m L (see `Joint.scaled`).
+        torque limits to m L (see `Joint.scaled`), and soles sink in by the same share of their length.
 
         Raises:
             ParameterError: `mass` is outside `MASS_RANGE_KG`, or `stature` outside `STATURE_RANGE_M`.
@@ -298,6 +302,7 @@ class Skeleton:
             welds=tuple(w.scaled(length_factor) for w in self.welds),
             root_height=self.root_height * length_factor,
             raised=(right * length_factor, left * length_factor),
+            flesh=scaled(self.flesh, BodyScale(length_factor, mass_factor)),
         )
 
 

@@ -8,15 +8,12 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
 from humanwalk.body.contact import (
-    DISSIPATION,
     FRICTION,
-    HYDRO_MODULUS,
     HYDRO_RESOLUTION,
-    POINT_STIFFNESS,
-    RELAXATION_TIME,
     contact_boxes,
     contact_spheres,
 )
+from humanwalk.body.flesh import Flesh
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
 from humanwalk.body.shapes import Vector3
@@ -57,9 +54,10 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
     robot = ET.Element("robot", {"name": MODEL_NAME, "xmlns:drake": DRAKE_NAMESPACE})
     robot.append(ET.Comment(HEADER))
     spheres, boxes, looks = contact_spheres(skeleton), contact_boxes(skeleton), LOOKS[look](skeleton)
+    flesh = skeleton.flesh
     compliant: dict[str, float | None] = {
         "drake:compliant_hydroelastic": None,
-        "drake:hydroelastic_modulus": HYDRO_MODULUS,
+        "drake:hydroelastic_modulus": flesh.sole_modulus,
     }
     for segment, inboard in skeleton.tree():
         link = ET.SubElement(robot, "link", {"name": segment.name})
@@ -68,13 +66,13 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
         for sphere in spheres:
             if sphere.body == segment.name:
                 shape = ET.Element("sphere", {"radius": number(sphere.radius)})
-                stiffness = {"drake:point_contact_stiffness": POINT_STIFFNESS}
-                link.append(_collision(sphere.name, sphere.center, shape, stiffness))
+                stiffness = {"drake:point_contact_stiffness": flesh.sole_stiffness}
+                link.append(_collision(sphere.name, sphere.center, shape, flesh, stiffness))
         for box in boxes:
             if box.body == segment.name:
                 shape = ET.Element("box", {"size": numbers(box.size)})
                 resolution = {"drake:mesh_resolution_hint": HYDRO_RESOLUTION}
-                link.append(_collision(box.name, box.center, shape, {**compliant, **resolution}))
+                link.append(_collision(box.name, box.center, shape, flesh, {**compliant, **resolution}))
         if isinstance(inboard, Joint):
             robot.append(_revolute(inboard))
             robot.append(_transmission(inboard))
@@ -143,7 +141,9 @@ def _visual(look: Visual) -> ET.Element:
     return visual
 
 
-def _collision(name: str, center: Vector3, shape: ET.Element, properties: Mapping[str, float | None]) -> ET.Element:
+def _collision(
+    name: str, center: Vector3, shape: ET.Element, flesh: Flesh, properties: Mapping[str, float | None]
+) -> ET.Element:
     collision = ET.Element("collision", {"name": name})
     collision.append(_origin(center))
     ET.SubElement(collision, "geometry").append(shape)
@@ -151,8 +151,8 @@ def _collision(name: str, center: Vector3, shape: ET.Element, properties: Mappin
     common: dict[str, float | None] = {
         "drake:mu_static": FRICTION,
         "drake:mu_dynamic": FRICTION,
-        "drake:hunt_crossley_dissipation": DISSIPATION,
-        "drake:relaxation_time": RELAXATION_TIME,
+        "drake:hunt_crossley_dissipation": flesh.sole_dissipation,
+        "drake:relaxation_time": flesh.sole_relaxation_time,
     }
     for tag, value in {**common, **properties}.items():
         ET.SubElement(contact, tag, {} if value is None else {"value": number(value)})

@@ -1,9 +1,10 @@
 """Contact properties of the ground for Drake's own contact models."""
 
-from pydrake.geometry import AddContactMaterial, AddRigidHydroelasticProperties, ProximityProperties
-from pydrake.multibody.plant import CoulombFriction
+from pydrake.geometry import AddContactMaterial, AddRigidHydroelasticProperties, ProximityProperties, SceneGraph
+from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 
 from humanwalk.body.contact import FRICTION
+from humanwalk.body.flesh import Flesh
 
 
 def ground_properties(friction: float, hydroelastic: bool = False) -> ProximityProperties:
@@ -30,3 +31,13 @@ def ground_properties(friction: float, hydroelastic: bool = False) -> ProximityP
     if hydroelastic:
         AddRigidHydroelasticProperties(properties)
     return properties
+
+
+def set_ground_compliance(plant: MultibodyPlant, scene_graph: SceneGraph, flesh: Flesh) -> None:
+    """Set how the ground, which has no properties of its own, gives way below a body; before anything is registered."""
+    config = scene_graph.get_config()
+    config.default_proximity_properties.point_stiffness = flesh.ground_stiffness
+    config.default_proximity_properties.hunt_crossley_dissipation = flesh.ground_dissipation
+    config.default_proximity_properties.relaxation_time = flesh.ground_relaxation_time
+    scene_graph.set_config(config)
+    plant.set_stiction_tolerance(flesh.slip_speed)

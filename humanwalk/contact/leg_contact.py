@@ -25,12 +25,6 @@ THIGH_RADIUS, SHANK_RADIUS, FOOT_RADIUS = 0.06, 0.045, 0.035
 HEEL, BALL = np.array((-0.04, 0.0, -0.03)), np.array((0.17, 0.0, -0.03))
 """Rear and front end of the foot's capsule in the hindfoot's frame, of the reference human [m] (our choice)."""
 
-STIFFNESS = 2.0e4
-"""Point-contact stiffness of the legs [N/m] (our choice: flesh)."""
-
-DISSIPATION = 1.0
-"""Hunt-Crossley dissipation [s/m] (our choice)."""
-
 FRICTION = 0.3
 """Coulomb coefficient, static and dynamic (our choice: cloth on cloth)."""
 
@@ -41,7 +35,9 @@ LEG_SET = "_leg_contact"
 def add_leg_capsules(plant: MultibodyPlant, skeleton: Skeleton) -> None:
     """Register the capsules of both legs with a plant that is not finalized; `filter_leg_capsules` must follow."""
     properties = ProximityProperties()
-    AddContactMaterial(DISSIPATION, STIFFNESS, CoulombFriction(FRICTION, FRICTION), properties)
+    AddContactMaterial(
+        skeleton.flesh.leg_dissipation, skeleton.flesh.leg_stiffness, CoulombFriction(FRICTION, FRICTION), properties
+    )
     for side in SIDES:
         for body, start, end, radius in _capsules(skeleton, side):
             axis = end - start

@@ -18,10 +18,6 @@ from humanwalk.numerics.rotation import cross_matrix
 from humanwalk.terrain import Ground
 from humanwalk.walking.walking_reference import FootTask, WalkingReference
 
-FORCE_COST = 1e-6
-"""Cost per squared contact force [1/N2] (our choice); distributes the load over the contact points."""
-FORCE_UNIT = FORCE_COST**-0.5
-"""Unit of the forces in the program, whose square costs 1/2 [N]."""
 EDGES = 4
 """Number of edges of a friction pyramid."""
 
@@ -111,20 +107,20 @@ class SolesOnGround(NamedTuple):
         # The velocity of a point is v + w x r.
         J_points = J[:, 3:] - cross_matrix(self.r_W[points]) @ J[:, :3]
         mu = np.minimum(p.friction, p.friction_use * self.friction[points])
-        edges_W = friction_edges(mu) @ self.R_SW[points]
+        edges_W = friction_edges(mu, p.force_unit) @ self.R_SW[points]
         J_edges = edges_W @ J_points
         return Contacts(points, load[points], edges_W, J_edges.reshape(-1, J.shape[-1]))
 
 
-def friction_edges(mu: Array) -> Array:
-    """Edges of friction pyramids along the third axis, (n, 4, 3), for n friction coefficients; as long as a force of
-    `FORCE_UNIT` along that axis.
+def friction_edges(mu: Array, unit: float) -> Array:
+    """Edges of friction pyramids along the third axis, (n, 4, 3), for n friction coefficients; as long as a unit of
+    force [N] along that axis.
     """
     edges = np.zeros((mu.size, EDGES, 3))
     edges[:, :, 2] = 1.0
     edges[:, 0, 0] = edges[:, 2, 1] = mu
     edges[:, 1, 0] = edges[:, 3, 1] = -mu
-    edges *= FORCE_UNIT
+    edges *= unit
     return edges
 
 

@@ -19,7 +19,7 @@ class TaskGains:
     """Acceleration per velocity error."""
 
     weight: float = quantity(1.0, "", 0.0, 1e5)
-    """Cost per squared acceleration error."""
+    """Cost per squared acceleration error; that of an angular acceleration is multiplied by `rotation_radius`."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +103,26 @@ class WholeBodyParameters:
 
     knee_margin: float = quantity(0.05, "rad", 0.0, 0.5)
     """Flexion at which the knee's range ends here; a straight leg cannot be shortened."""
+
+    rotation_radius: float = quantity(1.0, "m", 0.01, 10.0)
+    """Length by which angular accelerations are multiplied where they are weighed against those of points."""
+
+    force_unit: float = quantity(1000.0, "N", 1.0, 1e6)
+    """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
+    (our choice); distributes the load over the contact points."""
+
+    max_contact_force: float = quantity(1500.0, "N", 100.0, 1e5)
+    """Maximum force along each edge (our choice): twice the weight of the body."""
+
+    joint_limit_stiffness: float = quantity(900.0, "1/s2", 0.0, 1e4)
+    """Bound of a joint's acceleration toward its limit per distance (our choice): a critically damped stop with a time
+    constant of 1/30 s."""
+
+    joint_limit_damping: float = quantity(60.0, "1/s", 0.0, 500.0)
+    """The same per velocity."""
+
+    joint_limit_acceleration: float = quantity(1000.0, "rad/s2", 10.0, 1e5)
+    """Largest acceleration that a joint limit requires."""
 
     hold: float = quantity(0.02, "s", 0.0, 0.2)
     """Time for which the last torques are held after a QP failure; then the joints are only damped."""

@@ -12,22 +12,14 @@ from humanwalk.body.impairments import NO_TORQUE
 from humanwalk.body.limbs import JOINT_GROUPS, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
-from humanwalk.control.whole_body_contacts import EDGES, FORCE_UNIT, Contacts, Soles
+from humanwalk.control.whole_body_contacts import EDGES, Contacts, Soles
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
 from humanwalk.control.whole_body_tasks import Task, tasks
 from humanwalk.numerics import Array
 from humanwalk.walking.walking_reference import WalkingReference
 
 EFFORT_COST = 1e-4
-"""Cost per squared joint acceleration (our choice): small against the weights of the tasks."""
-
-MAX_FORCE = 1500.0
-"""Maximum contact force along each edge of a friction pyramid [N] (our choice): twice the weight of the body."""
-
-JOINT_LIMIT_STIFFNESS = 900.0
-JOINT_LIMIT_DAMPING = 60.0
-"""Bound of a joint's acceleration toward its limit per distance [1/s2] and per velocity [1/s]: a critically damped stop
-with a time constant of 1/30 s (our choice)."""
+"""Cost per squared acceleration of base and joints (our choice): small against the weights of the tasks."""
 
 LOCKED_TORQUE = 1e4
 """Torque that a locked joint carries [N m]; never active."""
@@ -38,9 +30,9 @@ UNLIMITED = np.array(((-np.inf,), (np.inf,)))
 UNBOUNDED = np.tile(((-1e4,), (1e4,)), 6)
 """Lower and upper bounds of the accelerations of the floating base [rad/s2, m/s2]; never active."""
 
-JOINT_LIMIT_ACCELERATION_MIN = np.array(((-1e4,), (-1e3,)))
-JOINT_LIMIT_ACCELERATION_MAX = np.array(((1e3,), (1e4,)))
-"""Range of the lower and of the upper bound of a joint's acceleration [rad/s2]."""
+JOINT_LIMIT_RANGE = np.array(((-10.0, -1.0), (1.0, 10.0)))
+"""Lower ends, then upper ends, of the ranges of the lower and of the upper bound of a joint's acceleration, relative to
+the largest that a joint limit requires."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +94,8 @@ class WholeBodyQp:
         """Number of velocities whose accelerations are unknown: the first ones."""
         assert gains[: m - 6] == weighted, "the model file has a prescribed joint before a free one"
         self._weight = np.array([g.weight for g in weighted])
-        self._regularization = np.diag(EFFORT_COST + np.concatenate((np.zeros(6), self._weight)))
+        radius = np.repeat((parameters.rotation_radius, 1.0, parameters.rotation_radius), (3, 3, len(weighted)))
+        self._regularization = np.diag(radius**2 * (EFFORT_COST + np.concatenate((np.zeros(6), self._weight))))
 
         margin = parameters.knee_margin * np.isin(self.names, JOINT_GROUPS["knee"])
         self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
@@ -162,16 +155,17 @@ class WholeBodyQp:
         WJ = w[:, None] * J
         H = J.T @ WJ + self._regularization
         g = -a @ WJ
-        g[6:] -= self._weight * desired
+        g[6:] -= p.rotation_radius**2 * self._weight * desired
 
         contacts = soles.contacts(body, reference, p)
-        max_force = np.repeat(MAX_FORCE / FORCE_UNIT * contacts.load, EDGES)
+        max_force = np.repeat(p.max_contact_force / p.force_unit * contacts.load, EDGES)
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
-        toward_limits = JOINT_LIMIT_STIFFNESS * distance - JOINT_LIMIT_DAMPING * v[: m - 6]
+        toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]
+        low, high = p.joint_limit_acceleration * JOINT_LIMIT_RANGE[:, :, None]
         bounds = (
             (np.zeros_like(max_force), max_force),
             UNBOUNDED,
-            np.clip(toward_limits, JOINT_LIMIT_ACCELERATION_MIN, JOINT_LIMIT_ACCELERATION_MAX),
+            np.clip(toward_limits, low, high),
             # The equations of motion M v' + h - J' f = tau: of the base, whose tau is 0, and of the joints.
             self._torque_range - (body.h[:m] + body.M[:m, m:] @ prescribed),
         )

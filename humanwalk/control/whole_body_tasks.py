@@ -75,8 +75,8 @@ def tasks(
     found = [
         *_center_of_mass(body, reference, p),
         _center_of_pressure(body, reference, p),
-        _rotation(body.frame(PELVIS), yaw_pitch(reference.pelvis_yaw, 0.0), p.pelvis),
-        _rotation(body.frame(CHEST), yaw_pitch(reference.chest_yaw, 0.0), p.chest),
+        _rotation(body.frame(PELVIS), yaw_pitch(reference.pelvis_yaw, 0.0), p.pelvis, p),
+        _rotation(body.frame(CHEST), yaw_pitch(reference.chest_yaw, 0.0), p.chest, p),
     ]
     for side in SIDES:
         leg, foot = LEGS[side], reference.foot(side)
@@ -114,12 +114,17 @@ def _center_of_pressure(body: Dynamics, reference: WalkingReference, p: WholeBod
 
 
 def _rotation(
-    frame: FrameMotion, R_WG: Array, gains: TaskGains, velocity: Array = REST, acceleration: Array = REST
+    frame: FrameMotion,
+    R_WG: Array,
+    gains: TaskGains,
+    p: WholeBodyParameters,
+    velocity: Array = REST,
+    acceleration: Array = REST,
 ) -> Task:
     """A frame should have the orientation R_WG, with an angular velocity and acceleration in W."""
     error = rotation_vector(frame.R_WB, R_WG)
     desired = acceleration + gains.stiffness * error + gains.damping * (velocity - frame.V_WB[:3])
-    return Task(frame.J[:3], desired - frame.bias[:3], gains.weight)
+    return Task(frame.J[:3], desired - frame.bias[:3], p.rotation_radius**2 * gains.weight)
 
 
 def _turn(foot: Foot, rotation: Task) -> Task:
@@ -129,14 +134,15 @@ def _turn(foot: Foot, rotation: Task) -> Task:
     return Task(rotation.J[2:], rotation.acceleration[2:], rotation.weight)
 
 
-def _no_motion(frame: FrameMotion, velocity: Array, gains: TaskGains) -> Task:
-    """A frame should not turn and have a translational velocity in W."""
-    desired = gains.damping * (np.concatenate((REST, velocity)) - frame.V_WB)
-    return Task(frame.J, desired - frame.bias, gains.weight)
+def _no_motion(frame: FrameMotion, velocity: Array, p: WholeBodyParameters) -> Iterator[Task]:
+    """A frame in stance should not turn and have a translational velocity in W."""
+    desired = p.stance.damping * (np.concatenate((REST, velocity)) - frame.V_WB) - frame.bias
+    yield Task(frame.J[:3], desired[:3], p.rotation_radius**2 * p.stance.weight)
+    yield Task(frame.J[3:], desired[3:], p.stance.weight)
 
 
 def _flat(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
-    yield _no_motion(foot.hindfoot, foot.sinking(reference.R_WS, p), p.stance)
+    yield from _no_motion(foot.hindfoot, foot.sinking(reference.R_WS, p), p)
 
 
 def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
@@ -144,16 +150,16 @@ def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -
     heel = foot.hindfoot.point(foot.p_BHeel)
     desired = p.stance.damping * (foot.sinking(reference.R_WS, p) - heel.velocity)
     yield Task(heel.J, desired - heel.bias, p.stance.weight)
-    yield _turn(foot, _rotation(foot.hindfoot, reference.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike))
+    yield _turn(foot, _rotation(foot.hindfoot, reference.R_WS @ yaw_pitch(reference.yaw, 0.0), p.heel_strike, p))
 
 
 def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
     """The toes stand, and the hindfoot pitches about its own axis."""
-    yield _no_motion(foot.toes, REST, p.stance)
+    yield from _no_motion(foot.toes, REST, p)
     angle, rate, acceleration = reference.pitch
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
-    whole = _rotation(foot.hindfoot, R_WG, p.heel_off, rate * axis, acceleration * axis)
+    whole = _rotation(foot.hindfoot, R_WG, p.heel_off, p, rate * axis, acceleration * axis)
     if foot.is_steered:
         yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
 
@@ -173,7 +179,7 @@ def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iter
     angle, pitch_rate, pitch_acceleration = reference.pitch
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
-    yield _turn(foot, _rotation(frame, R_WG, p.swing_rotation, pitch_rate * axis, pitch_acceleration * axis))
+    yield _turn(foot, _rotation(frame, R_WG, p.swing_rotation, p, pitch_rate * axis, pitch_acceleration * axis))
 
 
 _FOOT_TASKS: dict[FootTask, Callable[[Foot, FootReference, WholeBodyParameters], Iterator[Task]]] = {

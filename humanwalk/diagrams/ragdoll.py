@@ -35,7 +35,7 @@ STIFFNESS_SHARE, DAMPING_SHARE = 0.05, 0.02
 """Gains of every joint toward its angle at the start, per effort limit [1/rad, s/rad]: tense, but it collapses."""
 
 FLESH_STIFFNESS = 2.0e4
-"""Point-contact stiffness of a part of the body [N/m], as of the legs on each other."""
+"""Point-contact stiffness of a part of the body [N/m], as of the legs of the reference human on each other."""
 
 DISSIPATION = 2.0
 """Hunt-Crossley dissipation [s/m]: the body does not bounce."""

@@ -12,6 +12,7 @@ from humanwalk.choices.contact import exclude_unused_contact_sets
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_positions
 from humanwalk.choices.world import World
+from humanwalk.contact.ground_properties import set_ground_compliance
 from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.scenario import Scenario
@@ -44,6 +45,7 @@ def add_world(
     """
     subject, terrain, contact, start = scenario.subject, scenario.terrain, scenario.contact, scenario.start
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, scenario.simulation.time_step)
+    set_ground_compliance(plant, scene_graph, subject.body.flesh)
     instance = add_human(plant, subject)
     terrain.add_to(plant, contact.ground_properties)
     plant.set_contact_model(contact.model)

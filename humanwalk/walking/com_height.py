@@ -6,18 +6,8 @@ from dataclasses import dataclass
 from humanwalk.quantity import quantity
 from humanwalk.walking.motions import ScalarMotion
 
-FREE_REACH = 0.4
-"""Forward distance of a foothold from the center of mass that is reached without lowering it [m]: the feet roll over
-heel and ball."""
-
-HEEL_RISE = 0.03
-"""Length that a leg gains when its heel rises [m] (our choice)."""
-
 RISE_SHARE, DESCENT_SHARE = 0.6, 0.8
 """Shares of the height of a step up and of one down by which the longer leg limits the center of mass (our choice)."""
-
-FREE_SPREAD = 0.1
-"""The same sideways [m]: about half the distance of the hips."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +37,16 @@ class ComHeight:
     """Speed at which the mean height decreases before a step down: as late as possible, since the body is still behind
     the ball of the foot at first, and an ankle that bends no further would stop it there."""
 
+    free_reach: float = quantity(0.4, "m", 0.0, 1.0)
+    """Forward distance of a foothold from the center of mass that is reached without lowering it: the feet roll over
+    heel and ball."""
+
+    free_spread: float = quantity(0.1, "m", 0.0, 0.5)
+    """The same sideways: about half the distance of the hips."""
+
+    heel_rise: float = quantity(0.03, "m", 0.0, 0.2)
+    """Length that a leg gains when its heel rises (our choice)."""
+
     def arc_amplitude(self, speed: float) -> float:
         """Amplitude of the arcs [m] at a forward speed [m/s]."""
         return self.amplitude * speed**2
@@ -59,8 +59,8 @@ class ComHeight:
             leg: Distance of hip and ankle of a straight leg [m].
             standing: Height of the center of mass with straight legs [m].
         """
-        forward = max(abs(reach.real) - FREE_REACH, 0.0)
-        sideways = max(abs(reach.imag) - FREE_SPREAD, 0.0)
+        forward = max(abs(reach.real) - self.free_reach, 0.0)
+        sideways = max(abs(reach.imag) - self.free_spread, 0.0)
         return standing - leg + math.sqrt(max(leg**2 - forward**2 - sideways**2, 0.0))
 
     def max_for_step(self, rise: float, rolling: float, standing: float) -> float:
@@ -74,7 +74,7 @@ class ComHeight:
             rolling: Share of the ordinary heel-off before touchdown.
             standing: Height of the center of mass with straight legs [m].
         """
-        return standing + rolling * HEEL_RISE - max(RISE_SHARE * rise, -DESCENT_SHARE * rise)
+        return standing + rolling * self.heel_rise - max(RISE_SHARE * rise, -DESCENT_SHARE * rise)
 
     def before_descent(self, descent: float, remaining: float) -> float:
         """Height by which the center of mass may still be higher than the foothold requires at touchdown [m].

@@ -6,7 +6,7 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -14,14 +14,8 @@ from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.command import Command
 
-MIN_SPEED = 0.1
-"""Commanded speed [m/s] below which the walker turns with the command instead of with the path."""
-
-SPACING = 0.05
-"""Distance between two stored places [m]."""
-
 STORED_PLACES = 40
-"""Number of stored places: the last two meters."""
+"""Number of stored places: the last two meters of the reference body."""
 
 
 class Place(NamedTuple):
@@ -58,14 +52,17 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class CommandedPath:
-    """The last two meters of the path: places `SPACING` apart; the last one is the commanded place."""
+    """The last part of the path.
+
+    Attributes:
+        places: Places `spacing` apart; the last one is the commanded place.
+        spacing: Distance between two stored places [m].
+        min_speed: See `PathFollowing`.
+    """
 
     places: tuple[Place, ...]
-
-    @staticmethod
-    def begin(position: complex, heading: float) -> CommandedPath:
-        """The path of a standing walker."""
-        return CommandedPath((Place(position, heading),))
+    spacing: float
+    min_speed: float
 
     @property
     def end(self) -> Place:
@@ -76,14 +73,14 @@ class CommandedPath:
         """The path `dt` [s] later."""
         end = self.end.advanced(command, dt)
         *stored, last = self.places
-        if not stored or last.distance - stored[-1].distance >= SPACING:
+        if not stored or last.distance - stored[-1].distance >= self.spacing:
             stored = [*stored, last][-STORED_PLACES:]
-        return CommandedPath((*stored, end))
+        return replace(self, places=(*stored, end))
 
     def nearest(self, position: complex, command: Command) -> Place:
         """The place of the path that is nearest to a position; beyond its end, the path continues along the command."""
         speed = abs(command.velocity)
-        if speed < MIN_SPEED:
+        if speed < self.min_speed:
             return self.end
         direction = command.velocity / speed * cmath.exp(1j * self.end.heading)
         ahead = ((position - self.end.position) / direction).real
@@ -98,7 +95,8 @@ class CommandedPath:
 
     def shifted(self, displacement: complex) -> CommandedPath:
         """The path, displaced [m]."""
-        return CommandedPath(tuple(place._replace(position=place.position + displacement) for place in self.places))
+        places = (place._replace(position=place.position + displacement) for place in self.places)
+        return replace(self, places=tuple(places))
 
 
 @dataclass(frozen=True)
@@ -120,6 +118,16 @@ class PathFollowing:
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
     """Largest speed along the path."""
+
+    min_speed: float = quantity(0.1, "m/s", 0.0, 1.0)
+    """Commanded speed below which the walker turns with the command instead of with the path."""
+
+    spacing: float = quantity(0.05, "m", 0.01, 0.5)
+    """Distance between two stored places of the path."""
+
+    def begin(self, position: complex, heading: float) -> CommandedPath:
+        """The path of a standing walker."""
+        return CommandedPath((Place(position, heading),), self.spacing, self.min_speed)
 
     def correction(self, path: CommandedPath, nearest: Place, position: complex, command: Command) -> complex:
         """Velocity to be added to the commanded one, relative to the heading of the nearest place [m/s].

@@ -14,30 +14,8 @@ from humanwalk.quantity import quantity
 OUTWARD: dict[Side, float] = {"Left": -1.0, "Right": 1.0}
 """Sign of y on the outer side of the swinging foot, by stance foot."""
 
-ABREAST = 0.15
-"""Distance ahead of or behind the stance foot up to which the legs are side by side [m]."""
-
-MAX_LENGTH = 1.0
-"""Largest distance of a foothold ahead of or behind the stance foot [m]."""
-
-SPEEDUP_LENGTH = 0.95 * MAX_LENGTH
-"""Length of the desired step beyond which the clock runs faster [m]."""
-
-MIN_OWN_SIDE_OFFSET = 0.05
-"""A foot that stands less than this on its own side of the stance foot cannot step across it [m]."""
-
-FILTER_TIME = 0.02
-"""Time constant of the low-pass filter of the foothold [s]."""
-
-RISE_FILTER_TIME = 0.06
-"""Time constant of the low-pass filter of the heights of a swing whose foothold moves to another face [s]: a leg that
-is lifted faster throws the body up."""
-
-FACE_FREEZE_TIME = 0.15
-"""The face of the foothold does not change for this long before touchdown [s]."""
-
-FREEZE_TIME = 0.04
-"""The foothold is constant for this long before touchdown [s]."""
+SPEEDUP_SHARE = 0.95
+"""Share of the largest step length beyond which the clock runs faster."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +47,31 @@ class StepPlacement:
     """Largest distance of a foothold ahead of or behind the center of mass at touchdown: beyond, the stretched leg does
     not reach the ground in time."""
 
+    max_length: float = quantity(1.0, "m", 0.1, 2.0)
+    """Largest distance of a foothold ahead of or behind the stance foot."""
+
+    abreast: float = quantity(0.15, "m", 0.0, 0.5)
+    """Distance ahead of or behind the stance foot up to which the legs are side by side."""
+
+    min_own_side_offset: float = quantity(0.05, "m", 0.0, 0.3)
+    """A foot that stands less than this on its own side of the stance foot cannot step across it."""
+
+    filter_time: float = quantity(0.02, "s", 0.0, 0.5)
+    """Time constant of the low-pass filter of the foothold."""
+
+    rise_filter_time: float = quantity(0.06, "s", 0.0, 0.5)
+    """Time constant of the low-pass filter of the heights of a swing whose foothold moves to another face: a leg that
+    is lifted faster throws the body up."""
+
+    freeze_time: float = quantity(0.04, "s", 0.0, 0.5)
+    """The foothold is constant for this long before touchdown."""
+
+    face_freeze_time: float = quantity(0.15, "s", 0.0, 0.5)
+    """The face of the foothold does not change for this long before touchdown."""
+
     def min_step_width(self, x: float) -> float:
         """Minimum sideways distance [m] of a foot that is x [m] ahead of the stance foot."""
-        return max(self.min_width - max(abs(x) - ABREAST, 0.0), -self.max_crossover)
+        return max(self.min_width - max(abs(x) - self.abreast, 0.0), -self.max_crossover)
 
     def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
         """Waypoint beside the stance foot for a swinging foot that would hit it.
@@ -97,7 +97,7 @@ class StepPlacement:
         Args: See `within_reach`.
         """
         outward = OUTWARD[stance]
-        if outward * foot.imag < MIN_OWN_SIDE_OFFSET:
+        if outward * foot.imag < self.min_own_side_offset:
             return 0.0
         return max(-outward * desired.imag, 0.0)
 
@@ -115,8 +115,8 @@ class StepPlacement:
         outward = OUTWARD[stance]
         width = outward * desired.imag
         sideways_excess = max(self.min_width - self.speedup_crossing - width, width - self.speedup_width)
-        excess = max(sideways_excess, abs(desired.real) - SPEEDUP_LENGTH, 0.0)
-        x = clip(desired.real, -MAX_LENGTH, MAX_LENGTH)
+        excess = max(sideways_excess, abs(desired.real) - SPEEDUP_SHARE * self.max_length, 0.0)
+        x = clip(desired.real, -self.max_length, self.max_length)
         has_passed = foot.real * x > 0.0
         min_width = max(self.min_step_width(x), self.min_step_width(foot.real)) if has_passed else self.min_width
         return complex(x, outward * clip(width, min_width, self.max_width)), excess

@@ -4,7 +4,6 @@ from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.terrain.face import surface_axes
 from humanwalk.walking.command import Command
-from humanwalk.walking.foot_rockers import FULL_PITCH_SPEED
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import blend
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -33,7 +32,7 @@ def rollover_speed(
     length = ((goal.position - start.position) / state.direction).real
     climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
     ordinary = min(command.forward, SHORT_STEP * length / state.timing.step)
-    return (1.0 - climbing) * ordinary + climbing * max(ordinary, FULL_PITCH_SPEED)
+    return (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
 
 
 def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:

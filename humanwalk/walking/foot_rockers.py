@@ -8,9 +8,6 @@ from humanwalk.quantity import quantity
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
-FULL_PITCH_SPEED = 1.0
-"""Forward speed from which on the pitch at toe-off is greatest [m/s]."""
-
 
 @dataclass(frozen=True)
 class FootRockers:
@@ -26,7 +23,10 @@ class FootRockers:
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
     pitch: float = quantity(1.0, "rad", 0.0, 1.2)
-    """Pitch of the foot at toe-off at 1 m/s and faster; proportional to the speed below."""
+    """Pitch of the foot at toe-off at `full_pitch_speed` and faster; proportional to the speed below."""
+
+    full_pitch_speed: float = quantity(1.0, "m/s", 0.1, 5.0)
+    """Forward speed from which on the pitch at toe-off is greatest."""
 
     late_rise: float = quantity(0.0, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
@@ -55,7 +55,7 @@ class FootRockers:
             R_WS: Axes of the ground under the foot.
             speed: Forward speed [m/s].
         """
-        final = self.pitch * clip(speed / FULL_PITCH_SPEED, 0.0, 1.0)
+        final = self.pitch * clip(speed / self.full_pitch_speed, 0.0, 1.0)
         s, late = min(since / duration, 1.0), self.late_rise
         value = final * s * s * (1.0 - late + late * s)
         rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration

@@ -19,9 +19,6 @@ from humanwalk.quantity import quantity
 from humanwalk.terrain.face import ENDLESS, Face
 from humanwalk.terrain.terrain import Ground
 
-SAME_FACE = 0.1
-"""Distance by which another face must be nearer than the one that the foot is on its way to [m] (our choice)."""
-
 FREE = 1e-3
 """Height above a face up to which ground beside it is part of it [m]."""
 
@@ -51,6 +48,9 @@ class FootholdSearch:
     height_weight: float = quantity(0.25, "", 0.0, 10.0)
     """Weight of the difference in height from the stance foot relative to a forward distance, so that the
     walker does not take two low steps of a stair at once."""
+
+    same_face: float = quantity(0.1, "m", 0.0, 1.0)
+    """Distance by which another face must be nearer than the one that the foot is on its way to (our choice)."""
 
 
 class Foothold(NamedTuple):
@@ -164,7 +164,7 @@ def nearest_foothold(
                 continue
             if len(places) > 1 and not has_free_ground(ground, place, face, yaw, sole):
                 continue
-            cost = abs(complex(off.real, search.lateral_weight * off.imag)) - SAME_FACE * same
+            cost = abs(complex(off.real, search.lateral_weight * off.imag)) - search.same_face * same
             cost += search.height_weight * abs(height - level)
             if cost < least:
                 best, least = Foothold(place, height, face), cost

@@ -8,9 +8,6 @@ from typing import NamedTuple
 
 from humanwalk.numerics.scalars import clip, quintic_blend
 
-JERK_LIMIT = 6000.0
-"""Bound on the third derivative of the position [m/s3], so that a foothold that jumps does not jerk the leg."""
-
 
 class ScalarMotion(NamedTuple):
     """Value, rate and acceleration of a height [m] or an angle [rad]."""
@@ -84,11 +81,11 @@ class PlanarMotion(NamedTuple):
     velocity: complex = 0.0
     acceleration: complex = 0.0
 
-    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float = JERK_LIMIT) -> PlanarMotion:
+    def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
         """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds.
 
-        The jerk is that of the quintic from the current motion, bounded, and constant for `dt`; the goal may move from
-        call to call.
+        The jerk is that of the quintic from the current motion, up to a limit [m/s3], and constant for `dt`; the goal
+        may move from call to call.
         """
         r = max(remaining, 2.0 * dt)
         jerk = 60.0 * (goal.position - self.position) / r**3

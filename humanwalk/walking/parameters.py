@@ -32,6 +32,9 @@ class StepPlannerParameters:
     path: PathFollowing = PathFollowing()
     rotation: CounterRotation = CounterRotation()
 
+    stop_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
+    """Commanded speed up to which a step is the last one."""
+
     dcm_gain: float = quantity(1.0, "", 0.0, 5.0)
     """Rate at which an error of the DCM decays, relative to the natural frequency, within the base of support."""
 

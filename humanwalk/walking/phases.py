@@ -9,21 +9,19 @@ from humanwalk.body import Side
 from humanwalk.body.limbs import other_side
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
-from humanwalk.walking.commanded_path import CommandedPath
 from humanwalk.walking.foot_references import foot_behind
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
-from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import BodyState, Phase
 from humanwalk.walking.zmp_reference import desired_gait
 
-STOP_SPEED = 0.05
-"""Commanded speed [m/s] and turn rate [rad/s] up to which a step is the last one."""
+STOP_TURN = 0.0265
+"""Commanded turn in the time of a step up to which a step is the last one [rad]."""
 
 
 class PhaseTransitions:
@@ -53,7 +51,7 @@ class PhaseTransitions:
             support=support,
             heading=heading,
             old_heading=heading,
-            path=CommandedPath.begin(0.5 * (right.position + left.position), heading),
+            path=self._parameters.path.begin(0.5 * (right.position + left.position), heading),
             height=body.com_height - support,
             timing=self._parameters.timing,
             ground=self._ground,
@@ -65,7 +63,8 @@ class PhaseTransitions:
 
     def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         timing = state.timing
-        is_moving = max(abs(command.velocity), abs(command.turn)) > STOP_SPEED
+        turn = abs(command.turn) * self._parameters.timing.step
+        is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
         if state.phase is Phase.STAND and is_moving:
             return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
@@ -159,7 +158,7 @@ class PhaseTransitions:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""
         foot = body.foot(state.stance)
         is_landing = state.steps > 0 and 0.0 < state.elapsed <= self._parameters.rockers.heel
-        if foot.force >= TOUCHDOWN_FORCE or not is_landing:
+        if foot.force >= self._parameters.timing.touchdown_force or not is_landing:
             return state
         foothold = Foothold.on(state.ground, foot.position)
         return state._replace(right=foothold) if state.stance == "Right" else state._replace(left=foothold)

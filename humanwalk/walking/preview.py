@@ -23,15 +23,12 @@ from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Ground
-from humanwalk.walking.foot_placement import MAX_LENGTH, OUTWARD, StepPlacement, foothold_gain
+from humanwalk.walking.foot_placement import OUTWARD, StepPlacement, foothold_gain
 from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold
 from humanwalk.walking.lipm import PeriodicGait
 
 STEPS = 3
 """Number of footholds that are planned; each counts a tenth to a fifth of the one before."""
-
-MIN_LENGTH = 0.05
-"""Mean length of the desired steps from which on the speed follows the footholds [m]."""
 
 PACE_RANGE = (0.2, 1.5)
 """Range of the speed over irregular footholds, relative to the desired one (our choice)."""
@@ -53,6 +50,9 @@ class Pacing:
     friction_use: float = quantity(0.8, "", 0.1, 1.0)
     """Share of the friction that forces of the ground use at most; shortens steps on ice and on slopes."""
 
+    min_length: float = quantity(0.05, "m", 0.0, 0.5)
+    """Mean length of the desired steps from which on the speed follows the footholds."""
+
     def duration_factor(self, rise: float, lift: float) -> float:
         """Duration of a step relative to the ordinary one.
 
@@ -65,7 +65,7 @@ class Pacing:
     def longest_step(self, face: Face, com_height: float, width: float) -> float:
         """Longest step [m] of a width [m], for which forces from feet to center of mass are within friction."""
         usable = max(self.friction_use * face.friction - math.hypot(*face.gradient), 0.0)
-        return math.sqrt(max((2.0 * com_height * usable) ** 2 - width**2, MIN_LENGTH**2))
+        return math.sqrt(max((2.0 * com_height * usable) ** 2 - width**2, self.min_length**2))
 
 
 class Preview(NamedTuple):
@@ -156,7 +156,7 @@ class FootholdPlanner:
             min_width = min(self.placement.min_step_width(local.real), desired_width)
             return (
                 abs(height - stance.ground) <= self.search.max_rise
-                and abs(local.real) <= MAX_LENGTH
+                and abs(local.real) <= self.placement.max_length
                 and OUTWARD[side] * local.imag >= min_width - 1e-9
             )
 
@@ -195,6 +195,6 @@ class FootholdPlanner:
             first_ahead = ahead if len(moves) == 1 else first_ahead
             stance, side = foothold, other_side(side)
         pace = 1.0
-        if desired_length > STEPS * MIN_LENGTH:
+        if desired_length > STEPS * self.pacing.min_length:
             pace = clip(length / desired_length, *PACE_RANGE)
         return Preview(tuple(footholds), tuple(moves), pace, first_ahead)

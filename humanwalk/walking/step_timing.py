@@ -4,9 +4,6 @@ from dataclasses import dataclass, replace
 
 from humanwalk.quantity import quantity
 
-TOUCHDOWN_FORCE = 60.0
-"""Vertical force above which a foot counts as loaded [N]: a tenth of the weight of the reference body."""
-
 
 @dataclass(frozen=True)
 class StepTiming:
@@ -33,6 +30,9 @@ class StepTiming:
     double_support_rate_limit: float = quantity(3.0, "", 0.0, 10.0)
     """Largest increase of the rate in double support, where a foothold across the stance foot calls for it."""
 
+    touchdown_force: float = quantity(60.0, "N", 0.0, 500.0)
+    """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""
+
     def stretched(self, factor: float) -> "StepTiming":
         """The timing of a step that takes `factor` times as long."""
         if factor == 1.0:
@@ -56,7 +56,7 @@ class StepTiming:
             force: Vertical ground reaction force on the swinging foot [N].
         """
         progress = self.swing_progress(elapsed)
-        return progress >= 1.0 or (progress > self.early_touchdown and force > TOUCHDOWN_FORCE)
+        return progress >= 1.0 or (progress > self.early_touchdown and force > self.touchdown_force)
 
     def phase_rate(self, excess: float, limit: float) -> float:
         """Rate of the clock, 1 nominally.

@@ -36,11 +36,8 @@ WIDTH = 10
 ENDING = 0.25
 """Part of the swing before touchdown in which the margin decreases."""
 
-HOLD = 0.06
-"""Time in which a foot that only rises or sinks corrects its place [s] (our choice)."""
-
-SPACING = 0.03
-"""Largest distance of two points under the sole [m]."""
+POINTS = (10, 5)
+"""Numbers of points along and across the sole below which the ground is tried: 3 cm apart for the reference body."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +59,9 @@ class ClearanceParameters:
     sinking: float = quantity(0.4, "", 0.0, 0.45)
     """Part of the swing in which a foot below an edge only sinks."""
 
+    hold: float = quantity(0.06, "s", 0.0, 0.5)
+    """Time in which a foot that only rises or sinks corrects its place (our choice)."""
+
 
 class Clearance(NamedTuple):
     """What a swing adds to that on a plane.
@@ -81,13 +81,13 @@ class Clearance(NamedTuple):
             return ScalarMotion()
         return PiecewiseCubic.through((0.0, *self.lift, 0.0)).at(progress)
 
-    def time_to_depart(self, progress: float, remaining: float) -> float:
-        """Time until the foot departs [s], at a progress with a remaining time to touchdown [s]; at least `HOLD`."""
-        return max((self.depart - progress) / (1.0 - progress) * remaining, HOLD)
+    def time_to_depart(self, progress: float, remaining: float, hold: float) -> float:
+        """Time until the foot departs, at a progress with a remaining time to touchdown; at least `hold` [s, all]."""
+        return max((self.depart - progress) / (1.0 - progress) * remaining, hold)
 
-    def time_to_arrive(self, progress: float, remaining: float) -> float:
+    def time_to_arrive(self, progress: float, remaining: float, hold: float) -> float:
         """Time until the foot is above its foothold [s]; see `time_to_depart`."""
-        return max((self.arrive - progress) / max(1.0 - progress, 1e-9) * remaining, HOLD)
+        return max((self.arrive - progress) / max(1.0 - progress, 1e-9) * remaining, hold)
 
     def filtered(self, goal: Clearance, smoothing: float) -> Clearance:
         """The clearance moved toward another one by a share of the difference."""
@@ -158,8 +158,8 @@ def height_above_plane(
         ground, start, goal, yaw, sole: See `clearance`.
         share: Shares of the way of the ankle, shape (n,).
     """
-    x = np.linspace(-sole.back, sole.front, 2 + int((sole.back + sole.front) / SPACING))
-    y = np.linspace(-sole.half_width, sole.half_width, 2 + int(2.0 * sole.half_width / SPACING))
+    x = np.linspace(-sole.back, sole.front, POINTS[0])
+    y = np.linspace(-sole.half_width, sole.half_width, POINTS[1])
     under = cmath.exp(1j * yaw) * (x[:, None] + 1j * y).ravel()
     points = (start.position + share * (goal.position - start.position))[:, None] + under
     xy = np.stack((points.real, points.imag), axis=-1)

@@ -20,15 +20,8 @@ PITCH_SHAPE = (0.0, -0.1, 0.36, 0.87, 1.0)
 """Pitch at the quarters of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
 humans have 0.1, 0.5 and 0.9 at the inner quarters."""
 
-MAX_PITCH_SPEED = 1.7
-"""Forward speed above which the pitch at touchdown is constant [m/s]."""
-
-LANDING_DEPTH = 0.003
-"""Depth below the ground at which the trajectory ends [m], so that the swing ends by contact."""
-
-
-FLAT_RISE = 0.1
-"""Height of a step from which on the foot lands flat [m]; on stairs people land on the ball or the whole sole."""
+MAX_TOE_UP = 0.442
+"""Largest pitch at touchdown [rad]: that of 1.7 m/s."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +53,18 @@ class SwingParameters:
     landing_deceleration: float = quantity(22.0, "1/s", 0.0, 50.0)
     """Horizontal deceleration at touchdown, per speed of the walk."""
 
+    landing_depth: float = quantity(0.003, "m", 0.0, 0.05)
+    """Depth below the ground at which the trajectory ends, so that the swing ends by contact."""
+
+    flat_rise: float = quantity(0.1, "m", 0.01, 1.0)
+    """Height of a step from which on the foot lands flat; on stairs people land on the ball or the whole sole."""
+
+    jerk_limit: float = quantity(6000.0, "m/s3", 100.0, 1e5)
+    """Bound on the third derivative of the position, so that a foothold that jumps does not jerk the leg."""
+
     def rolling_share(self, rise: float) -> float:
         """Share of the touchdown pitch for a step onto ground that is `rise` [m] above the plane of the stance foot."""
-        return max(1.0 - abs(rise) / FLAT_RISE, 0.0)
+        return max(1.0 - abs(rise) / self.flat_rise, 0.0)
 
     def descent_share(self, rise: float) -> float:
         """How much of a step down a step is, 0 to 1; `rise` as in `rolling_share`."""
@@ -70,7 +72,7 @@ class SwingParameters:
 
     def touchdown_pitch(self, speed: float) -> float:
         """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
-        return self.toe_up * clip(speed, 0.0, MAX_PITCH_SPEED)
+        return min(self.toe_up * max(speed, 0.0), MAX_TOE_UP)
 
     def toe_off_acceleration(self, velocity: complex) -> complex:
         """Horizontal acceleration at toe-off [m/s2] for a velocity of the walk [m/s]."""
@@ -107,7 +109,7 @@ class SwingProfile:
             parameters: Shape of the swing.
             sole: Extent of the sole.
         """
-        landing = flat_height - LANDING_DEPTH + parameters.heel_height * sole.back * math.sin(toe_up)
+        landing = flat_height - parameters.landing_depth + parameters.heel_height * sole.back * math.sin(toe_up)
         apex = max(foot.height + parameters.lift, flat_height + parameters.clearance)
         inner = flat_height + np.array(HEIGHT_SHAPE) * (apex - flat_height)
         heights = np.array((foot.height, *inner, landing))

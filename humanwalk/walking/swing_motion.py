@@ -6,7 +6,6 @@ Points of the level plane are complex numbers x + iy [m].
 from typing import NamedTuple
 
 from humanwalk.walking.command import Command
-from humanwalk.walking.foot_placement import FACE_FREEZE_TIME, FILTER_TIME, FREEZE_TIME, RISE_FILTER_TIME
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -49,7 +48,7 @@ def advanced_swing(
         period: Control period [s].
     """
     is_first = state.elapsed - state.timing.double_support < 0.5 * period
-    if state.timing.step - state.elapsed > FREEZE_TIME:
+    if state.timing.step - state.elapsed > parameters.placement.freeze_time:
         swing = _with_foothold(state, swing, goal, parameters, footholds, None if is_first else period)
     return swing._replace(motion=_moved(state, swing, goal.remaining, command, parameters, period))
 
@@ -63,9 +62,11 @@ def _with_foothold(
     period: float | None,
 ) -> Swing:
     """The swing with the foothold nearest to the goal, filtered but in the first control period."""
-    smoothing, slow = (1.0 if period is None else period / (period + time) for time in (FILTER_TIME, RISE_FILTER_TIME))
+    placement = parameters.placement
+    times = (placement.filter_time, placement.rise_filter_time)
+    smoothing, slow = (1.0 if period is None else period / (period + time) for time in times)
     yaw = state.heading + state.turn * state.timing.step
-    is_final = state.timing.step - state.elapsed < FACE_FREEZE_TIME
+    is_final = state.timing.step - state.elapsed < placement.face_freeze_time
     stance = (state.stance_foot, state.stance, state.direction)
     place = footholds.nearest(state.ground, goal.desired, yaw, *stance, swing.foothold.face, goal.expected, is_final)
     feet = (state.old_foot, place)
@@ -87,19 +88,19 @@ def _moved(
     period: float,
 ) -> PlanarMotion:
     """Motion over the level plane: on the way to the foothold, and around the stance foot."""
-    foothold, added = swing.foothold.position, swing.clearance
+    foothold, added, jerk_limit = swing.foothold.position, swing.clearance, parameters.swing.jerk_limit
     progress = state.timing.swing_progress(state.elapsed)
     landing, time = parameters.swing.landing(foothold, command.velocity * state.direction), remaining
     if progress < added.depart:
-        landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining)
+        landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining, parameters.clearance.hold)
     elif added.arrive < 1.0:
-        landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining)
-    motion = swing.motion.towards(landing, time, period)
+        landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining, parameters.clearance.hold)
+    motion = swing.motion.towards(landing, time, period, jerk_limit)
     waypoint = parameters.placement.passing_waypoint(
         state.local(swing.motion.position), state.local(foothold), state.stance
     )
     if waypoint is None:
         return motion
     point, fraction = waypoint
-    passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, period)
+    passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, period, jerk_limit)
     return motion.with_sideways_of(passing, state.direction)

@@ -5,7 +5,6 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.terrain import Touch
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.walking_reference import BodyState
 
 
@@ -31,7 +30,7 @@ def touches(
     found = []
     for side in standing_feet(state):
         foot = body.foot(side)
-        is_loaded = foot.force >= TOUCHDOWN_FORCE
+        is_loaded = foot.force >= parameters.timing.touchdown_force
         if not (is_loaded or is_landing):
             continue
         ankle = (foot.position.real, foot.position.imag, foot.height)

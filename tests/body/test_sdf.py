@@ -199,12 +199,22 @@ def test_contact_parameters(parsed: Parsed) -> None:
         properties = inspector.GetProximityProperties(geometry)
         friction = properties.GetProperty("material", "coulomb_friction")
         assert friction.static_friction() == friction.dynamic_friction() == 0.7
-        assert properties.GetProperty("material", "hunt_crossley_dissipation") == 1.0
-        assert properties.GetProperty("material", "relaxation_time") == 0.02
+        flesh = parsed.skeleton.flesh
+        dissipation = properties.GetProperty("material", "hunt_crossley_dissipation")
+        assert dissipation == pytest.approx(flesh.sole_dissipation)
+        assert properties.GetProperty("material", "relaxation_time") == pytest.approx(flesh.sole_relaxation_time)
         if POINT_SET in inspector.GetName(geometry):
-            assert properties.GetProperty("material", "point_contact_stiffness") == 2.0e5
+            stiffness = properties.GetProperty("material", "point_contact_stiffness")
+            assert stiffness == pytest.approx(flesh.sole_stiffness)
         else:
-            assert properties.GetProperty("hydroelastic", "hydroelastic_modulus") >= 1.0e7
+            modulus = properties.GetProperty("hydroelastic", "hydroelastic_modulus")
+            assert modulus == pytest.approx(flesh.sole_modulus)
+
+
+def test_soles_sink_by_the_same_share_of_their_length(parsed: Parsed) -> None:
+    body, reference = parsed.skeleton, human()
+    sunk, usual = (person.total_mass / person.flesh.sole_stiffness / person.stature for person in (body, reference))
+    assert sunk == pytest.approx(usual)
 
 
 def test_nothing_visible_is_below_the_ground(parsed: Parsed) -> None:

@@ -16,7 +16,7 @@ from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
-from humanwalk.control.whole_body_qp import JOINT_LIMIT_DAMPING, JOINT_LIMIT_STIFFNESS, Posture, WholeBodyQp
+from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
@@ -186,7 +186,7 @@ def test_a_nearly_straight_knee_is_not_extended_further(dynamics: BodyDynamics, 
     solution = qp.solve(body, high, rest(qp))
     knee = qp.names.index(LEGS["Right"].knee)
     angle = body.q[dynamics.joints.q[dynamics.joints.names.index(LEGS["Right"].knee)]]
-    bound = JOINT_LIMIT_STIFFNESS * (PARAMETERS.knee_margin - angle)
+    bound = PARAMETERS.joint_limit_stiffness * (PARAMETERS.knee_margin - angle)
     assert solution.acceleration[6 + knee] >= bound - 0.1
 
 
@@ -317,7 +317,7 @@ def test_a_locked_knee_does_not_move_and_its_muscles_rest() -> None:
     body = body_at(dynamics, 0.5 * angle, v)
     solution = qp.solve(body, reference_for(body), rest(qp))
     assert solution is not None
-    assert solution.acceleration[6 + knee] == pytest.approx(-JOINT_LIMIT_DAMPING * rate, rel=1e-3)
+    assert solution.acceleration[6 + knee] == pytest.approx(-PARAMETERS.joint_limit_damping * rate, rel=1e-3)
     assert solution.torque[knee] == 0.0
     assert abs(solution.torque[qp.names.index(LEGS["Left"].knee)]) > 1.0
 

@@ -20,6 +20,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.body import contact as soles
 from humanwalk.body.contact import rectangle_patch
+from humanwalk.body.flesh import Flesh
 from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.ground_properties import ground_properties
 from humanwalk.numerics import Array
@@ -32,12 +33,13 @@ from humanwalk.terrain.slope import Flat, Slope
 from humanwalk.terrain.steps import Curb, Obstacle, Stairs, Stones
 
 MODELS = ("point", "hydroelastic", "asperity")
+FLESH = Flesh()
 SIZE, MASS = (0.09, 0.08, 0.04), 8.0
 WEIGHT = MASS * GRAVITY
 SOLE = SIZE[0] * SIZE[1]
 SUNK = {
-    "point": WEIGHT / (4.0 * soles.POINT_STIFFNESS),
-    "hydroelastic": WEIGHT * 0.5 * SIZE[2] / (soles.HYDRO_MODULUS * SOLE),
+    "point": WEIGHT / (4.0 * FLESH.sole_stiffness),
+    "hydroelastic": WEIGHT * 0.5 * SIZE[2] / (FLESH.sole_modulus * SOLE),
     "asperity": WEIGHT / (AsperityParameters().normal_stiffness * SOLE),
 }
 """Depth at which the ground carries a block at rest [m]."""
@@ -84,9 +86,9 @@ class Blocks:
     def _add_sole(self, body: RigidBody, model: str) -> None:
         properties = ProximityProperties()
         friction = CoulombFriction(soles.FRICTION, soles.FRICTION)
-        AddContactMaterial(soles.DISSIPATION, soles.POINT_STIFFNESS, friction, properties)
+        AddContactMaterial(FLESH.sole_dissipation, FLESH.sole_stiffness, friction, properties)
         if model == "hydroelastic":
-            AddCompliantHydroelasticProperties(1.0, soles.HYDRO_MODULUS, properties)
+            AddCompliantHydroelasticProperties(1.0, FLESH.sole_modulus, properties)
             self.plant.RegisterCollisionGeometry(body, RigidTransform(), Box(*SIZE), "sole", properties)
         if model == "point":
             radius = soles.SPHERE_RADIUS

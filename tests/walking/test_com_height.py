@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.com_height import FREE_REACH, FREE_SPREAD, ComHeight
+from humanwalk.walking.com_height import ComHeight
 
 HEIGHT = ComHeight()
 STEP = 0.52
@@ -42,7 +42,7 @@ distances = st.floats(-0.5, 0.5)
 def test_a_straight_leg_reaches_the_foothold_from_the_greatest_height(x: float, y: float) -> None:
     highest = HEIGHT.max_com_height_for_reach(complex(x, y), LEG, STANDING)
     assert highest <= STANDING
-    beyond = max(abs(x) - FREE_REACH, 0.0), max(abs(y) - FREE_SPREAD, 0.0)
+    beyond = max(abs(x) - HEIGHT.free_reach, 0.0), max(abs(y) - HEIGHT.free_spread, 0.0)
     hip = LEG + highest - STANDING
     assert hip**2 + beyond[0] ** 2 + beyond[1] ** 2 == pytest.approx(LEG**2)
 

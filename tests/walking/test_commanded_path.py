@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import CommandedPath, PathFollowing
 
-START = CommandedPath.begin(0.0, 0.0)
+START = PathFollowing().begin(0.0, 0.0)
 FOLLOWING = PathFollowing()
 STRAIGHT, TURNING = Command(0.6), Command(0.6, 0.0, 0.2)
 
@@ -59,13 +59,13 @@ def test_before_the_corner_the_nearest_place_is_on_the_straight(lag: float) -> N
 
 
 def test_on_the_spot_the_walker_turns_with_the_command() -> None:
-    path = CommandedPath.begin(1.0, 0.7)
+    path = PathFollowing().begin(1.0, 0.7)
     assert path.nearest(0.5j, Command(0.0, 0.0, 0.5)) == path.end
 
 
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-math.pi, math.pi))
 def test_the_correction_points_to_the_path_and_is_bounded(x: float, y: float, heading: float) -> None:
-    path = walked(STRAIGHT, 3.0, CommandedPath.begin(0.3 + 0.1j, heading))
+    path = walked(STRAIGHT, 3.0, PathFollowing().begin(0.3 + 0.1j, heading))
     away = complex(x, y) * cmath.exp(1j * heading)
     own = path.end.position - FOLLOWING.lag * STRAIGHT.velocity * cmath.exp(1j * heading)
     walker = own + away

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.sides import Side
-from humanwalk.walking.foot_placement import ABREAST, MAX_LENGTH, OUTWARD, StepPlacement, foothold_gain
+from humanwalk.walking.foot_placement import OUTWARD, StepPlacement, foothold_gain
 
 PLACEMENT = StepPlacement()
 sides = st.sampled_from(["Left", "Right"])
@@ -20,9 +20,9 @@ def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(
 ) -> None:
     foothold, excess = PLACEMENT.within_reach(complex(x, y), stance, place)
     width = OUTWARD[stance] * foothold.imag
-    assert abs(foothold.real) <= MAX_LENGTH
+    assert abs(foothold.real) <= PLACEMENT.max_length
     assert -PLACEMENT.max_crossover <= width <= PLACEMENT.max_width
-    if abs(foothold.real) <= ABREAST:
+    if abs(foothold.real) <= PLACEMENT.abreast:
         assert width >= PLACEMENT.min_width
     assert excess >= 0.0
 

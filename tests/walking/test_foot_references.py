@@ -6,13 +6,13 @@ from hypothesis import strategies as st
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.walking.command import Command
-from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
-from humanwalk.walking.swing_foot import LANDING_DEPTH, SwingProfile
+from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.walking_reference import FootState, FootTask, Phase
 
 PARAMETERS = StepPlannerParameters()
@@ -25,7 +25,7 @@ OLD, STANCE, NEXT = Foothold(-0.1j, 0.0), Foothold(0.5 + 0.1j, 0.0), Foothold(1.
 
 def state_at(elapsed: float, steps: int = 1) -> PlannerState:
     phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
-    path = CommandedPath.begin(0.0, 0.0)
+    path = PathFollowing().begin(0.0, 0.0)
     return PlannerState(phase, elapsed, "Left", OLD, STANCE, 0.0, 0.0, 0.0, path, height=0.9, steps=steps)
 
 
@@ -78,7 +78,7 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
 def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground: float) -> None:
     foothold = Foothold(NEXT.position, ground)
     end = swinging_foot(state_at(TIMING.step), swing_to(foothold), 1.0, PARAMETERS)
-    assert end.height.value == pytest.approx(ground + ANKLE - LANDING_DEPTH)
+    assert end.height.value == pytest.approx(ground + ANKLE - PARAMETERS.swing.landing_depth)
     assert end.pitch.value == pytest.approx(-0.25)
     assert end.toes == pytest.approx((0.0, 0.0), abs=1e-9)
 

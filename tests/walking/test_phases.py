@@ -9,10 +9,9 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.phases import STOP_SPEED, PhaseTransitions
+from humanwalk.walking.phases import STOP_TURN, PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.preview import FootholdPlanner
-from humanwalk.walking.step_timing import TOUCHDOWN_FORCE
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
 PARAMETERS = StepPlannerParameters()
@@ -53,7 +52,12 @@ def test_it_starts_in_standing_on_the_foot_that_does_not_swing_first() -> None:
 def test_any_command_above_the_stop_speed_begins_a_weight_shift(command: Command) -> None:
     state = PHASES.start(BODY, 0.0)
     assert PHASES.advance(state, BODY, command).phase is Phase.WEIGHT_SHIFT
-    assert PHASES.advance(state, BODY, Command(0.9 * STOP_SPEED)).phase is Phase.STAND
+    assert (
+        PHASES.advance(
+            state, BODY, Command(0.9 * PARAMETERS.stop_speed, turn=0.9 * STOP_TURN / PARAMETERS.timing.step)
+        ).phase
+        is Phase.STAND
+    )
 
 
 def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured() -> None:
@@ -86,7 +90,7 @@ def test_the_last_step_ends_in_standing() -> None:
     assert (state.phase, state.steps) == (Phase.STAND, 0)
 
 
-@pytest.mark.parametrize("force, is_moved", [(0.5 * TOUCHDOWN_FORCE, True), (2.0 * TOUCHDOWN_FORCE, False)])
+@pytest.mark.parametrize("force, is_moved", [(30.0, True), (120.0, False)])
 def test_a_stance_foot_without_load_after_touchdown_stands_where_it_is_measured(force: float, is_moved: bool) -> None:
     state = PHASES.advance(in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)._replace(elapsed=0.02)
     later = PHASES.advance(state, landed_at(0.55 - 0.1j, force), WALK)

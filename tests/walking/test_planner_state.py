@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.walking_reference import Phase
@@ -15,7 +15,7 @@ points = st.builds(complex, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
 
 
 def state_on(left: Foothold, heading: float) -> PlannerState:
-    path = CommandedPath.begin(0.0, heading)
+    path = PathFollowing().begin(0.0, heading)
     right = Foothold(0.0, 0.0)
     return PlannerState(Phase.DOUBLE_SUPPORT, 0.0, "Left", right, left, 0.0, heading, heading, path, height=0.9)
 

@@ -22,7 +22,6 @@ from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_planner import StepPlanner
-from humanwalk.walking.swing_foot import LANDING_DEPTH
 from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase, WalkingReference
 
 PERIOD = 0.004
@@ -311,7 +310,9 @@ def test_on_stairs_every_foothold_is_on_a_tread_and_the_swing_ends_there(rise: f
             swing = state.swing
             assert swing is not None
             ankle = reference.foot(state.swing_side).height[0]
-            assert ankle == pytest.approx(swing.foothold.ground + ANKLE - LANDING_DEPTH, abs=0.01)
+            assert ankle == pytest.approx(
+                swing.foothold.ground + ANKLE - StepPlannerParameters().swing.landing_depth, abs=0.01
+            )
             xy = np.array([(reference.foothold.real + x, reference.foothold.imag) for x in (-SOLE.back, SOLE.front)])
             assert (course.height(xy) == swing.foothold.ground).all()
             swings += 1

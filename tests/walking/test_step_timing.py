@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.step_timing import TOUCHDOWN_FORCE, StepTiming
+from humanwalk.walking.step_timing import StepTiming
 
 TIMING = StepTiming()
-LOADED, UNLOADED = 2.0 * TOUCHDOWN_FORCE, 0.5 * TOUCHDOWN_FORCE
+LOADED, UNLOADED = 2.0 * StepTiming.touchdown_force, 0.5 * StepTiming.touchdown_force
 
 
 def at_progress(progress: float) -> float:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.step_timing import StepTiming
@@ -21,7 +21,7 @@ heights = st.floats(-1.0, 1.0)
 def state_at(elapsed: float, old: float, stance: float, support: float, phase: Phase | None = None) -> PlannerState:
     stepping = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
     feet = Foothold(-0.1j, old), Foothold(0.1j, stance)
-    path = CommandedPath.begin(0.0, 0.0)
+    path = PathFollowing().begin(0.0, 0.0)
     return PlannerState(phase or stepping, elapsed, "Left", *feet, support, 0.0, 0.0, path, height=0.9)
 
 

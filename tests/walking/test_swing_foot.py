@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body.contact import SoleExtent
-from humanwalk.walking.swing_foot import LANDING_DEPTH, MAX_PITCH_SPEED, SwingParameters, SwingProfile
+from humanwalk.walking.swing_foot import MAX_TOE_UP, SwingParameters, SwingProfile
 from humanwalk.walking.walking_reference import FootState
 
 DURATION = 0.42
@@ -22,7 +22,7 @@ def test_the_pitch_at_touchdown_grows_with_the_forward_speed_up_to_a_limit() -> 
     law = SwingParameters()
     assert law.touchdown_pitch(-0.5) == law.touchdown_pitch(0.0) == 0.0
     assert law.touchdown_pitch(1.4) == pytest.approx(2.0 * law.touchdown_pitch(0.7))
-    assert law.touchdown_pitch(3.0) == law.touchdown_pitch(MAX_PITCH_SPEED)
+    assert law.touchdown_pitch(3.0) == MAX_TOE_UP
 
 
 @given(st.complex_numbers(max_magnitude=2.0))
@@ -55,15 +55,15 @@ def test_it_continues_the_motion_at_toe_off(profile: SwingProfile) -> None:
 
 def test_it_lands_on_the_heel_with_the_landing_speed(profile: SwingProfile) -> None:
     (height, pitch), parameters = profile.at(1.0), SwingParameters()
-    assert height.value == pytest.approx(0.068 - LANDING_DEPTH)
+    assert height.value == pytest.approx(0.068 - SwingParameters.landing_depth)
     assert pitch.value == pytest.approx(-0.25)
     assert height.rate / DURATION == pytest.approx(-parameters.landing_sink_rate)
 
 
 def test_a_foot_that_lands_on_its_heel_is_higher_by_what_the_heel_is_lower_than_the_ankle() -> None:
     profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, DURATION, SwingParameters(heel_height=1.0), SOLE)
-    assert profile.at(1.0)[0].value == pytest.approx(0.068 - LANDING_DEPTH + SOLE.back * math.sin(0.25))
-    assert profile.lowest(1.0, 0.068, SOLE) == pytest.approx(-LANDING_DEPTH)
+    assert profile.at(1.0)[0].value == pytest.approx(0.068 - SwingParameters.landing_depth + SOLE.back * math.sin(0.25))
+    assert profile.lowest(1.0, 0.068, SOLE) == pytest.approx(-SwingParameters.landing_depth)
 
 
 def test_it_clears_the_ground_in_between(profile: SwingProfile) -> None:

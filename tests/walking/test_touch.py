@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from humanwalk.body.contact import SoleExtent
-from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
@@ -20,7 +20,7 @@ BODY = BodyState(0j, 0j, 0.95, right=replace(FOOT, position=-0.1j), left=FOOT)
 
 
 def state_at(phase: Phase, elapsed: float = 0.3) -> PlannerState:
-    feet, path = (Foothold(-0.1j, 0.0), Foothold(0.1j, 0.0)), CommandedPath.begin(0.0, 0.0)
+    feet, path = (Foothold(-0.1j, 0.0), Foothold(0.1j, 0.0)), PathFollowing().begin(0.0, 0.0)
     return PlannerState(phase, elapsed, "Left", *feet, 0.0, 0.0, 0.0, path, height=0.9, steps=2)
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from humanwalk.body import SIDES
 from humanwalk.sides import Side
 from humanwalk.walking.command import Command
-from humanwalk.walking.commanded_path import CommandedPath
+from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.footholds import LEVEL, Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
@@ -35,7 +35,7 @@ def state_at(
 ) -> PlannerState:
     u = cmath.exp(1j * heading)
     feet = {"right": Foothold(-0.1j * u, 0.0), "left": Foothold((0.5 + 0.1j) * u, 0.0)}
-    path = CommandedPath.begin(0.0, heading)
+    path = PathFollowing().begin(0.0, heading)
     state = PlannerState(phase, elapsed, stance, **feet, support=0.0, heading=heading, old_heading=heading,  # type: ignore[arg-type]
                          path=path, height=0.9)  # fmt: skip
     return state._replace(**changes)
