@@ -71,7 +71,7 @@ class WholeBodyParameters:
     swing_rotation: TaskGains = critical(400.0, 20.0)
     """Rotation of the swing foot."""
 
-    swing_acceleration_limit: float = quantity(60.0, "m/s2", 10.0, 1000.0)
+    swing_acceleration_limit: float = quantity(100.0, "m/s2", 10.0, 1000.0)
     """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
 
     pelvis: TaskGains = critical(200.0, 5.0)

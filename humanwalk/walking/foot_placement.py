@@ -37,7 +37,7 @@ class StepPlacement:
     speedup_crossing: float = quantity(0.07, "m", 0.0, 0.3)
     """The clock runs faster when the desired foothold is narrower than `min_width` by more than this."""
 
-    speedup_width: float = quantity(0.35, "m", 0.2, 1.0)
+    speedup_width: float = quantity(0.3, "m", 0.2, 1.0)
     """The clock runs faster when the desired foothold is wider than this."""
 
     passing_distance: float = quantity(0.12, "m", 0.0, 0.3)
@@ -89,17 +89,18 @@ class StepPlacement:
             return None
         return 1j * outward * self.passing_distance, foot.real / (foot.real - foothold.real)
 
-    def crossover_distance(self, desired: complex, stance: Side, foot: complex) -> float:
-        """Distance of a desired foothold across the stance foot [m], in double support.
+    def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
+        """Distance by which a desired foothold calls for a faster clock in double support [m].
 
-        It is 0 if the foot to be lifted is itself across the stance foot: it has to come out from behind first.
+        It calls for one if it is wider than `speedup_width`, or across the stance foot. A foot that is itself across
+        has to come out from behind before it can step across.
 
         Args: See `within_reach`.
         """
         outward = OUTWARD[stance]
-        if outward * foot.imag < self.min_own_side_offset:
-            return 0.0
-        return max(-outward * desired.imag, 0.0)
+        width = outward * desired.imag
+        crossing = -width if outward * foot.imag >= self.min_own_side_offset else 0.0
+        return max(width - self.speedup_width, crossing, 0.0)
 
     def within_reach(self, desired: complex, stance: Side, foot: complex) -> tuple[complex, float]:
         """Nearest foothold that is within reach and clear of the stance leg.

@@ -162,8 +162,10 @@ class StepPlanner:
         # Clock of the step and swinging foot: a foothold out of reach makes the clock run faster.
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
         if swing is None:
-            excess = placement.crossover_distance(desired, state.stance, foot)
-            phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit)
+            excess = placement.double_support_excess(desired, state.stance, foot)
+            # If the old foot left before the new one carries load, the body would fall freely.
+            is_loaded = body.foot(state.stance).force >= timing.touchdown_force
+            phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit) if is_loaded else 1.0
             foothold = state.old_foot
             other_foot = foot_behind(state, command, p)
         else:

@@ -27,8 +27,8 @@ class StepTiming:
     phase_rate_limit: float = quantity(0.8, "", 0.0, 3.0)
     """Largest increase of the rate in single support."""
 
-    double_support_rate_limit: float = quantity(3.0, "", 0.0, 10.0)
-    """Largest increase of the rate in double support, where a foothold across the stance foot calls for it."""
+    double_support_rate_limit: float = quantity(6.0, "", 0.0, 10.0)
+    """Largest increase of the rate in double support, for a foothold across the stance foot or a wide one."""
 
     touchdown_force: float = quantity(60.0, "N", 0.0, 500.0)
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""

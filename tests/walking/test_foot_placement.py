@@ -42,7 +42,7 @@ def test_the_minimum_width_decreases_with_the_distance_ahead_or_behind(x: float,
     assert PLACEMENT.min_step_width(abs(x) + farther) <= PLACEMENT.min_step_width(x) == PLACEMENT.min_step_width(-x)
 
 
-@given(st.floats(-0.6, 0.7), st.floats(0.1, 0.34), sides)
+@given(st.floats(-0.6, 0.7), st.floats(0.1, 0.29), sides)
 def test_a_foothold_within_reach_is_not_moved_and_keeps_the_clock(x: float, width: float, stance: Side) -> None:
     desired = complex(x, OUTWARD[stance] * width)
     assert PLACEMENT.within_reach(desired, stance, 0.0) == (desired, 0.0)
@@ -54,15 +54,19 @@ def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-1.0, 1.5), sides)
-def test_the_crossover_distance_is_measured_across_the_stance_foot(x: float, width: float, stance: Side) -> None:
+def test_in_double_support_footholds_across_and_wide_ones_call_for_a_faster_clock(
+    x: float, width: float, stance: Side
+) -> None:
     beside = complex(-0.4, OUTWARD[stance] * 0.15)
-    across = PLACEMENT.crossover_distance(complex(x, OUTWARD[stance] * width), stance, beside)
-    assert across == pytest.approx(max(-width, 0.0))
+    excess = PLACEMENT.double_support_excess(complex(x, OUTWARD[stance] * width), stance, beside)
+    assert excess == pytest.approx(max(-width, width - PLACEMENT.speedup_width, 0.0))
 
 
 def test_a_foot_that_is_itself_across_does_not_hurry_to_cross() -> None:
     for side, outward in OUTWARD.items():
-        assert PLACEMENT.crossover_distance(1j * outward, side, complex(-0.4, -0.05 * outward)) == 0.0
+        across = complex(-0.4, -0.05 * outward)
+        assert PLACEMENT.double_support_excess(-1j * outward, side, across) == 0.0
+        assert PLACEMENT.double_support_excess(1j * outward, side, across) > 0.0
 
 
 def test_left_and_right_are_mirror_images() -> None:
