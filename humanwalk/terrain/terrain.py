@@ -41,6 +41,7 @@ class Touch(NamedTuple):
         forward, normal: Axes of the sole in W, shape (3,) each.
         pressure: Center of pressure in W [m], shape (3,); None without load.
         pressure_ahead: Distance of the center of pressure ahead of the ankle [m].
+        planned_ahead: The same of the center of pressure that was planned [m].
         is_rolling: Whether the heel is to be up, so that the sole does not show the slope.
     """
 
@@ -50,6 +51,7 @@ class Touch(NamedTuple):
     normal: Array
     pressure: Array | None
     pressure_ahead: float
+    planned_ahead: float
     is_rolling: bool
 
 
@@ -82,6 +84,11 @@ class Ground(Protocol):
     def faces_near(self, xy: Array, distance: float) -> tuple[Face, ...]:
         """Return the faces that have a point within a distance of xy [m], shape (2,), along x and along y."""
         return (self.face_at(xy),)
+
+    @property
+    def unseen(self) -> float:
+        """Height by which the true ground may stand out of this one [m]: swinging feet are lifted by so much more."""
+        return 0.0
 
     def felt(self, touches: Sequence[Touch], dt: float) -> "Ground":
         """Return the ground corrected by what the feet feel within `dt` [s]; here itself, for it is exact."""

@@ -52,9 +52,12 @@ class NoisyKnowledge:
 class BlindKnowledge:
     """Level ground, until the feet feel another one."""
 
+    unevenness: float = quantity(0.03, "m", 0.0, 0.1)
+    """Height by which the ground may stand out of what the feet feel; the swinging foot is lifted by so much more."""
+
     def ground(self, terrain: Ground, random: np.random.Generator) -> Ground:
         """See `TerrainKnowledge`."""
-        return FeltGround(Plane())
+        return FeltGround(Plane(), unevenness=self.unevenness)
 
 
 KNOWLEDGE: dict[str, type[TerrainKnowledge]] = {

@@ -17,6 +17,7 @@ from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
+from humanwalk.walking.touch import STANDING_TIME, first_touches
 from humanwalk.walking.walking_reference import BodyState, Phase
 from humanwalk.walking.zmp_reference import desired_gait
 
@@ -40,7 +41,8 @@ class PhaseTransitions:
 
     def start(self, body: BodyState, heading: float) -> PlannerState:
         """Standing on both feet, at the start of a path along a heading [rad]."""
-        right, left = (Foothold.on(self._ground, foot.position) for foot in (body.right, body.left))
+        ground = self._ground.felt(first_touches(body, self._footholds.sole, self._ankle_height), STANDING_TIME)
+        right, left = (Foothold.on(ground, foot.position) for foot in (body.right, body.left))
         support = 0.5 * (right.ground + left.ground)
         return PlannerState(
             phase=Phase.STAND,
@@ -54,7 +56,7 @@ class PhaseTransitions:
             path=self._parameters.path.begin(0.5 * (right.position + left.position), heading),
             height=body.com_height - support,
             timing=self._parameters.timing,
-            ground=self._ground,
+            ground=ground,
         )
 
     def advance(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:

@@ -65,6 +65,7 @@ class PlannerState(NamedTuple):
         timing: Durations of this step.
         preview: The next footholds.
         ground: What is known of the ground.
+        zmp: Zero-moment point that was planned last [m].
     """
 
     phase: Phase
@@ -85,6 +86,7 @@ class PlannerState(NamedTuple):
     timing: StepTiming = StepTiming()
     preview: Preview = Preview()
     ground: Ground = Plane()
+    zmp: complex = 0.0
 
     def __deepcopy__(self, memo: object) -> "PlannerState":
         """Return itself: Drake copies abstract values often, and the state is immutable."""

@@ -89,7 +89,8 @@ class StepPlanner:
         state = self._phases.advance(self._feel(state, body), body, command)
         plan = self._step if state.is_stepping else self._stand
         next_state, reference = plan(state, body, command, dcm)
-        return next_state._replace(path=state.path.advanced(command, self._period)), reference
+        path = state.path.advanced(command, self._period)
+        return next_state._replace(path=path, zmp=reference.zmp), reference
 
     def _feel(self, state: PlannerState, body: BodyState) -> PlannerState:
         """The state with what the feet feel of the ground."""

@@ -39,6 +39,9 @@ ENDING = 0.25
 POINTS = (10, 5)
 """Numbers of points along and across the sole below which the ground is tried: 3 cm apart for the reference body."""
 
+RAISING = 0.25
+"""Part of the swing in which a foot rises by what it does not see of the ground, and in which it sinks again."""
+
 
 @dataclass(frozen=True)
 class ClearanceParameters:
@@ -81,6 +84,12 @@ class Clearance(NamedTuple):
             return ScalarMotion()
         return PiecewiseCubic.through((0.0, *self.lift, 0.0)).at(progress)
 
+    def raised(self, height: float) -> Clearance:
+        """The clearance with an additional height [m] on the whole way, but for its first and last part."""
+        times = np.linspace(0.0, 1.0, INTERVALS + 1)[1:-1]
+        near = quintic_blend(np.clip(np.minimum(times, 1.0 - times) / RAISING, 0.0, 1.0))[0]
+        return self._replace(lift=tuple((np.array(self.lift) + height * near).tolist()))
+
     def time_to_depart(self, progress: float, remaining: float, hold: float) -> float:
         """Time until the foot departs, at a progress with a remaining time to touchdown; at least `hold` [s, all]."""
         return max((self.depart - progress) / (1.0 - progress) * remaining, hold)
@@ -104,7 +113,7 @@ def clearance(
     law: ClearanceParameters,
     ordinary: Array | float = 0.0,
 ) -> Clearance:
-    """Return what a swing from one foothold to another has to add.
+    """Return what a swing from one foothold to another has to add: to clear what is known of the ground, and the rest.
 
     Args:
         ground: What is known of the ground.
@@ -115,6 +124,20 @@ def clearance(
         law: Parameters.
         ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
     """
+    added = _known_clearance(ground, start, goal, yaw, sole, law, ordinary)
+    return added.raised(ground.unseen) if ground.unseen > 0.0 else added
+
+
+def _known_clearance(
+    ground: Ground,
+    start: Foothold,
+    goal: Foothold,
+    yaw: float,
+    sole: SoleExtent,
+    law: ClearanceParameters,
+    ordinary: Array | float,
+) -> Clearance:
+    """What a swing has to add on the ground as it is known; see `clearance`."""
     if start.face.covers_as(goal.face):
         return Clearance()
     share = np.linspace(0.0, 1.0, SAMPLES)

@@ -2,10 +2,14 @@
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
+from humanwalk.numerics import Array
 from humanwalk.terrain.terrain import Touch
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.walking_reference import BodyState
+from humanwalk.walking.walking_reference import BodyState, FootState
+
+STANDING_TIME = 10.0
+"""Time for which both feet have stood before the start [s], long enough to feel the whole slope (our choice)."""
 
 
 def standing_feet(state: PlannerState) -> tuple[Side, ...]:
@@ -33,9 +37,30 @@ def touches(
         is_loaded = foot.force >= parameters.timing.touchdown_force
         if not (is_loaded or is_landing):
             continue
-        ankle = (foot.position.real, foot.position.imag, foot.height)
-        heel = ankle - sole.back * foot.forward - ankle_height * foot.normal
         pressure = foot.pressure if is_loaded else None
-        ahead = float((foot.pressure - ankle) @ foot.forward)
-        found.append(Touch(SIDES.index(side), heel, foot.forward, foot.normal, pressure, ahead, is_rolling))
+        planned = ((state.zmp - foot.position) / state.direction).real
+        found.append(_touch(side, foot, pressure, planned, sole, ankle_height, is_rolling))
     return tuple(found)
+
+
+def first_touches(body: BodyState, sole: SoleExtent, ankle_height: float) -> tuple[Touch, ...]:
+    """Return what the feet feel at the start, when both stand with the whole sole; see `touches`."""
+    feet = ((side, body.foot(side)) for side in SIDES)
+    return tuple(
+        _touch(side, foot, foot.ankle - ankle_height * foot.normal, 0.0, sole, ankle_height, is_rolling=False)
+        for side, foot in feet
+    )
+
+
+def _touch(
+    side: Side,
+    foot: FootState,
+    pressure: Array | None,
+    planned: float,
+    sole: SoleExtent,
+    ankle_height: float,
+    is_rolling: bool,
+) -> Touch:
+    heel = foot.ankle - sole.back * foot.forward - ankle_height * foot.normal
+    ahead = 0.0 if pressure is None else float((pressure - foot.ankle) @ foot.forward)
+    return Touch(SIDES.index(side), heel, foot.forward, foot.normal, pressure, ahead, planned, is_rolling)

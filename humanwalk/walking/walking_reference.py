@@ -73,6 +73,11 @@ class FootState:
     normal: Array = field(default_factory=lambda: np.eye(3)[2])
     pressure: Array = field(default_factory=lambda: np.zeros(3))
 
+    @property
+    def ankle(self) -> Array:
+        """The ankle in W [m], shape (3,)."""
+        return np.array((self.position.real, self.position.imag, self.height))
+
 
 @dataclass(frozen=True)
 class BodyState:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import Touch
-from humanwalk.walking.felt_ground import BELOW, MAX_SLOPE, FeltGround
+from humanwalk.walking.felt_ground import BELOW, MAX_SLOPE, NEAR, TREND_TIME, FeltGround
 
 DT = 0.006
 slopes = st.floats(-0.15, 0.15)
@@ -22,7 +22,7 @@ def touch_on(plane: Plane, height: float, foot: int = 0, x: float = 0.0, **chang
     """A sole that lies on a plane raised by a height [m], with its pressure in the middle."""
     axes = plane.axes(np.zeros(2))
     heel, pressure = (surface_point(plane, np.array((x + along, 0.0)), height) for along in (-0.05, 0.04))
-    touch = Touch(foot, heel, axes[0], axes[2], pressure, pressure_ahead=0.04, is_rolling=False)
+    touch = Touch(foot, heel, axes[0], axes[2], pressure, pressure_ahead=0.04, planned_ahead=0.04, is_rolling=False)
     return touch._replace(**changes)
 
 
@@ -41,10 +41,26 @@ def felt(touches: tuple[Touch, ...], duration: float, ground: FeltGround | None 
 @given(slopes, slopes, heights)
 def test_a_foot_that_stands_flat_finds_the_plane_under_it(slope: float, cross_slope: float, height: float) -> None:
     plane = Plane(slope=slope, cross_slope=cross_slope)
-    ground = felt((touch_on(plane, height),), 0.5)
+    ground = felt((touch_on(plane, height),), 8.0 * TREND_TIME)
     for xy in np.array(((0.0, 0.0), (0.1, 0.05), (0.6, -0.2))):
         assert ground.height(xy) == pytest.approx(plane.height(xy) + height, abs=1e-4)
         np.testing.assert_allclose(ground.axes(xy), plane.axes(xy), atol=1e-4)
+
+
+@given(slopes)
+def test_the_slope_of_one_step_is_not_expected_far_from_the_foot(slope: float) -> None:
+    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * TREND_TIME)
+    assert ground.face_at(np.array((0.1, 0.0))).gradient[0] == pytest.approx(slope, rel=0.02, abs=1e-4)
+    assert abs(ground.face_at(np.array((0.8, 0.0))).gradient[0]) <= 0.5 * abs(slope)
+
+
+@given(slopes, st.floats(0.0, 6.3))
+def test_its_height_does_not_jump_where_the_slopes_of_the_last_steps_begin(slope: float, angle: float) -> None:
+    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * TREND_TIME)
+    way = np.array((math.cos(angle), math.sin(angle)))
+    (place,) = (anchor.place for anchor in ground.anchors if anchor is not None)
+    before, after = (float(ground.height(np.array(place) + (NEAR + d) * way)) for d in (-1e-6, 1e-6))
+    assert before == pytest.approx(after, abs=1e-6)
 
 
 def test_each_foot_has_a_height_of_its_own() -> None:
@@ -71,6 +87,11 @@ def test_a_heel_alone_expects_the_ground_ahead_lower_and_lower() -> None:
     ground = felt((touch,), 0.02)
     assert float(ground.height(np.array((0.15, 0.0)))) < -0.002
     assert float(ground.height(np.array((-0.04, 0.0)))) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_pressure_on_the_heel_that_was_planned_there_shows_nothing() -> None:
+    touch = touch_on(Plane(), 0.0, pressure=np.array((-0.04, 0.0, 0.0)), pressure_ahead=-0.04, planned_ahead=-0.04)
+    assert float(felt((touch,), 0.02).height(np.array((0.15, 0.0)))) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_foot_that_rolls_over_its_ball_does_not_show_the_slope() -> None:

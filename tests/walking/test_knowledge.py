@@ -26,12 +26,14 @@ def known(knowledge: Any, terrain: Ground, seed: int = 0) -> Ground:
 def test_exact_knowledge_is_the_terrain() -> None:
     assert known(ExactKnowledge(), COURSE) is COURSE
     assert COURSE.felt((), 0.01) is COURSE
+    assert COURSE.unseen == 0.0
 
 
 def test_blind_knowledge_is_level_ground_whatever_the_terrain() -> None:
     ground, xy = known(BlindKnowledge(), COURSE), np.random.default_rng(0).uniform(-2.0, 8.0, (50, 2))
     assert (ground.height(xy) == 0.0).all()
     assert (ground.axes(xy) == np.eye(3)).all()
+    assert ground.unseen == BlindKnowledge().unevenness > 0.0
 
 
 def test_noisy_knowledge_has_errors_of_the_given_size() -> None:

@@ -10,6 +10,7 @@ from humanwalk.numerics.scalars import clip, quintic_blend
 from humanwalk.terrain import Course, Plane, highest_along
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Curb, Obstacle, Stairs
+from humanwalk.walking.felt_ground import FeltGround
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.swing_clearance import INTERVALS, Clearance, ClearanceParameters, clearance
 
@@ -92,3 +93,13 @@ def test_the_lift_has_rates_that_are_derivatives_and_rests_at_both_ends() -> Non
     for end in (0.0, 1.0):
         assert added.at(end)[:2] == pytest.approx((0.0, 0.0), abs=1e-12)
     assert [added.at(k / INTERVALS).value for k in range(1, INTERVALS)] == pytest.approx(LIFT)
+
+
+@given(st.floats(0.0, 0.1))
+def test_ground_that_may_stand_out_unseen_lifts_the_foot_on_its_way_and_not_at_its_ends(unseen: float) -> None:
+    ground = FeltGround(Plane(), unevenness=unseen)
+    feet = Foothold.on(ground, 0.1j), Foothold.on(ground, 0.6 + 0.1j)
+    added = clearance(ground, *feet, 0.0, SOLE, LAW)
+    assert added.at(0.5).value == pytest.approx(unseen)
+    assert (added.at(0.0).value, added.at(1.0).value) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert all(0.0 <= lift <= unseen + 1e-12 for lift in added.lift)

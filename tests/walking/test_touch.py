@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from humanwalk.body.contact import SoleExtent
+from humanwalk.terrain import Plane
 from humanwalk.walking.commanded_path import PathFollowing
+from humanwalk.walking.felt_ground import FeltGround
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.touch import standing_feet, touches
+from humanwalk.walking.touch import STANDING_TIME, first_touches, standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
 PARAMETERS, SOLE, ANKLE = StepPlannerParameters(), SoleExtent(0.055, 0.211, 0.048), 0.07
@@ -37,6 +39,30 @@ def test_a_loaded_foot_feels_its_pressure_and_knows_its_heel() -> None:
     assert touch.heel == pytest.approx((-SOLE.back, 0.1, 0.0))
     assert touch.pressure_ahead == pytest.approx(0.03)
     assert touch.pressure is FOOT.pressure
+
+
+def test_a_stance_foot_compares_its_pressure_with_the_planned_one() -> None:
+    state = state_at(Phase.SINGLE_SUPPORT)._replace(zmp=-0.02 + 0.1j)
+    (touch,) = touches(state, BODY, PARAMETERS, SOLE, ANKLE)
+    assert touch.planned_ahead == pytest.approx(-0.02)
+
+
+def test_at_the_start_both_feet_feel_the_ground_under_their_soles_without_force() -> None:
+    pitch = 0.07
+    tilted = replace(
+        FOOT,
+        force=0.0,
+        forward=np.array((np.cos(pitch), 0.0, np.sin(pitch))),
+        normal=np.array((-np.sin(pitch), 0.0, np.cos(pitch))),
+    )
+    body = replace(BODY, right=replace(tilted, position=-0.1j), left=tilted)
+    found = first_touches(body, SOLE, ANKLE)
+    assert tuple(touch.foot for touch in found) == (0, 1)
+    ground = FeltGround(Plane()).felt(found, STANDING_TIME)
+    for x in (0.0, 0.5):
+        # The ankle is above its sole along the normal, not along z.
+        expected = ANKLE * (1.0 - 1.0 / np.cos(pitch)) + x * np.tan(pitch)
+        assert float(ground.height(np.array((x, 0.1)))) == pytest.approx(expected, abs=3e-3)
 
 
 def test_a_landing_foot_without_load_feels_no_pressure_and_later_nothing() -> None:
