@@ -28,6 +28,9 @@ NATURAL_SHANK = ("lower_shank", "lower_shank_stripe", "hem", "hem_stripe", "ankl
 PLAY = 0.0005
 """Range to either side of the joints that a prosthetic foot does not have [rad]."""
 
+SIDE_DAMPING = 5.0
+"""Damping of inversion [N m s/rad] (our choice)."""
+
 TOE_DAMPING = 0.3
 """Damping of flexible toes [N m s/rad] (our choice)."""
 
@@ -85,14 +88,14 @@ class AnkleProsthesis:
     Its ankle gives way in flexion and inversion, and its toes are flexible; it has no other joints.
     """
 
-    stiffness: float = quantity(400.0, "N m/rad", 50.0, 1500.0)
+    stiffness: float = quantity(300.0, "N m/rad", 50.0, 1500.0)
     """Stiffness of the ankle in flexion; human ankles in stance have about 5 N m/rad per kg (Shamaei et al. 2013,
     from memory)."""
 
-    damping: float = quantity(5.0, "N m s/rad", 0.0, 100.0)
-    """Damping of the ankle."""
+    damping: float = quantity(15.0, "N m s/rad", 0.0, 100.0)
+    """Damping of the ankle in flexion (our choice)."""
 
-    rest_angle: float = quantity(0.1, "rad", -0.3, 0.3)
+    rest_angle: float = quantity(0.12, "rad", -0.3, 0.3)
     """Dorsiflexion at which the spring is relaxed: aligned for the bent knees of the balanced walker (our choice)."""
 
     side_stiffness: float = quantity(150.0, "N m/rad", 20.0, 1500.0)
@@ -131,7 +134,7 @@ class AnkleProsthesis:
         rigid: dict[str, Any] = {"effort_limit_N_m": NO_TORQUE, "range_rad": (-PLAY, PLAY)}
         changes = {joint: rigid for joint in (leg.ankle_rotation, leg.midfoot)}
         changes[leg.ankle] = _spring(self.stiffness, self.damping, self.rest_angle)
-        changes[leg.ankle_inversion] = _spring(self.side_stiffness, self.damping)
+        changes[leg.ankle_inversion] = _spring(self.side_stiffness, SIDE_DAMPING)
         changes[leg.toes] = _spring(self.toe_stiffness, TOE_DAMPING)
         return replace(
             with_joints(skeleton, changes, lambda joint: replace(joint, **changes[joint.name])),

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from pydrake.multibody.plant import MultibodyPlant
 
+from humanwalk.body.impairments import NO_TORQUE
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics.scalars import clip
@@ -46,6 +48,13 @@ def upright(plant: MultibodyPlant) -> Upright:
         found.append(Upright(com - sole - lost, ankle - sole, hip - ankle - lost))
     right, left = found
     return left if left.com_height < right.com_height - SAME_HEIGHT else right
+
+
+def passive_ankles(plant: MultibodyPlant) -> tuple[Side, ...]:
+    """Return the sides of a finalized model of the body that have no muscles at the ankle."""
+    joints = JointMap.of(plant)
+    limits = dict(zip(joints.names, joints.effort_limits, strict=True))
+    return tuple(side for side, leg in LEGS.items() if limits[leg.ankle] <= NO_TORQUE)
 
 
 def knee_flexions(skeleton: Skeleton, flexion: float) -> Mapping[Side, float]:

@@ -10,6 +10,7 @@ import numpy as np
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.impairments import NO_TORQUE
 from humanwalk.body.limbs import JOINT_GROUPS, LEGS
+from humanwalk.body.upright import passive_ankles
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.control.whole_body_contacts import EDGES, Contacts, Soles
@@ -106,9 +107,7 @@ class WholeBodyQp:
         # Nothing in the program's reach keeps a joint without muscles within its range.
         passive = ~locked & (self.limits <= NO_TORQUE)
         self._range[:, passive[: m - 6]] = UNLIMITED
-        self._passive_ankles = [
-            side for side, leg in LEGS.items() if self.limits[self.names.index(leg.ankle)] <= NO_TORQUE
-        ]
+        self._passive_ankles = passive_ankles(dynamics.plant)
         torque_limits = np.concatenate((np.zeros(6), np.where(locked, LOCKED_TORQUE, self.limits)[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
 

@@ -18,6 +18,9 @@ from humanwalk.walking.walking_reference import FootReference, FootTask, Walking
 
 REST = np.zeros(3)
 
+BALL_PER_HEEL = np.array((-3.0, 1.0, 1.0))
+"""Position of the ball of a foot relative to the ankle, per that of the heel."""
+
 
 class Task(NamedTuple):
     """Desired value of J v'.
@@ -48,6 +51,14 @@ class Foot(NamedTuple):
     p_BHeel: Array
     heel_height: float
     is_steered: bool
+
+    @property
+    def p_BGuided(self) -> Array:
+        """Point of the hindfoot that follows the path of the swing [m], (3,).
+
+        It is the ankle, or the ball of a foot that the ankle does not turn: its toes point down while the knee is bent.
+        """
+        return REST if self.is_steered else self.p_BHeel * BALL_PER_HEEL
 
     def sinking(self, R_WS: Array, p: WholeBodyParameters) -> Array:
         """Desired velocity of a stance foot in W [m/s], (3,): 0, or toward the ground if it is still in the air."""
@@ -165,20 +176,24 @@ def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> I
 
 
 def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
-    """The ankle follows its path, and the foot its yaw and pitch."""
+    """The guided point follows the path that it has in the reference, and the foot its yaw and pitch."""
     frame, gains, path = foot.hindfoot, p.swing_position, reference.position
     height, rate, lift = reference.height
-    position = np.array((path.position.real, path.position.imag, height))
-    velocity = np.array((path.velocity.real, path.velocity.imag, rate))
-    desired = np.array((path.acceleration.real, path.acceleration.imag, lift))
-    desired += gains.stiffness * (position - frame.p_WB) + gains.damping * (velocity - frame.V_WB[3:])
-    level = np.hypot(desired[0], desired[1])
-    if level > p.swing_acceleration_limit:
-        desired[:2] *= p.swing_acceleration_limit / level
-    yield Task(frame.J[3:], desired - frame.bias[3:], gains.weight)
     angle, pitch_rate, pitch_acceleration = reference.pitch
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
+    # From the ankle of the reference to its guided point.
+    r, w = R_WG @ foot.p_BGuided, cross_matrix(pitch_rate * axis)
+    position = np.array((path.position.real, path.position.imag, height)) + r
+    velocity = np.array((path.velocity.real, path.velocity.imag, rate)) + w @ r
+    desired = np.array((path.acceleration.real, path.acceleration.imag, lift))
+    desired += w @ (w @ r) + pitch_acceleration * (cross_matrix(axis) @ r)
+    guided = frame.point(foot.p_BGuided)
+    desired += gains.stiffness * (position - guided.position) + gains.damping * (velocity - guided.velocity)
+    level = np.hypot(desired[0], desired[1])
+    if level > p.swing_acceleration_limit:
+        desired[:2] *= p.swing_acceleration_limit / level
+    yield Task(guided.J, desired - guided.bias, gains.weight)
     yield _turn(foot, _rotation(frame, R_WG, p.swing_rotation, p, pitch_rate * axis, pitch_acceleration * axis))
 
 

@@ -7,7 +7,7 @@ from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
-from humanwalk.body.upright import upright
+from humanwalk.body.upright import passive_ankles, upright
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
@@ -69,6 +69,7 @@ class GaitPlanner(LeafSystem):
             period=period,
             sole=sole,
             ground=ground,
+            passive_ankles=passive_ankles(plant),
         )
         self._com = self.DeclareVectorInputPort("com", 6)
         self._ankles = self.DeclareVectorInputPort("ankles", 30)

@@ -49,6 +49,10 @@ class ZmpSegment(NamedTuple):
             return self.end
         return self.start + (self.end - self.start) * min(max(t / self.duration, 0.0), 1.0)
 
+    def moved(self, by: complex) -> ZmpSegment:
+        """The segment at another place."""
+        return ZmpSegment(self.start + by, self.end + by, self.duration)
+
     def remainder(self, t: float) -> ZmpSegment:
         """The part of the segment from t [s] after the start."""
         return ZmpSegment(self.at(t), self.end, max(self.duration - max(t, 0.0), 0.0))

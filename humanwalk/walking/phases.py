@@ -3,6 +3,8 @@
 STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 
 from humanwalk.body import Side
@@ -35,7 +37,9 @@ class PhaseTransitions:
         first_swing: Side,
         ground: Ground,
         footholds: FootholdPlanner,
+        passive_ankles: Collection[Side] = (),
     ) -> None:
+        self._passive_ankles = passive_ankles
         self._parameters, self._ankle_height = parameters, ankle_height
         self._first_swing, self._ground, self._footholds = first_swing, ground, footholds
 
@@ -86,6 +90,9 @@ class PhaseTransitions:
         foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
         toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
+        if state.swing_side in self._passive_ankles:
+            # Nothing lifts its toes.
+            toe_up = 0.0
         sole = self._footholds.sole
         profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing, sole)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)

@@ -8,6 +8,7 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 """
 
 import math
+from collections.abc import Collection
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -31,6 +32,9 @@ from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import descent_shares, desired_gait, pivot_lead, remaining_pivot
 
+MIN_FORCE = 50.0
+"""Vertical force from which on the center of pressure under a foot is known [N] (our choice)."""
+
 
 class Balance(NamedTuple):
     """Zero-moment point, centroidal moment pivot, measured DCM and nominal DCM [m]."""
@@ -53,6 +57,7 @@ class StepPlanner:
         period: Control period [s].
         sole: Extent of a sole.
         ground: What is known of the ground.
+        passive_ankles: Sides without muscles at the ankle.
     """
 
     def __init__(
@@ -65,11 +70,13 @@ class StepPlanner:
         period: float,
         sole: SoleExtent,
         ground: Ground,
+        passive_ankles: Collection[Side] = (),
     ) -> None:
         self.parameters = parameters
         self.frequency = natural_frequency(parameters.height.walking * standing_com_height)
         self._standing_com_height, self._leg_length = standing_com_height, leg_length
         self._period, self._sole, self._ankle_height = period, sole, ankle_height
+        self._passive_ankles = passive_ankles
         self._footholds = FootholdPlanner(
             sole,
             parameters.footholds,
@@ -77,7 +84,7 @@ class StepPlanner:
             parameters.pacing,
             parameters.height.walking * standing_com_height,
         )
-        self._phases = PhaseTransitions(parameters, ankle_height, first_swing, ground, self._footholds)
+        self._phases = PhaseTransitions(parameters, ankle_height, first_swing, ground, self._footholds, passive_ankles)
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
         """The state in standing; the commanded path begins along a heading [rad]."""
@@ -137,6 +144,9 @@ class StepPlanner:
         end = state.world(p.support.center + gait.end_offset(state.stance, self.frequency, following))
         end += dcm_shift(preview.moves, gait, self.frequency)
         segments = remaining_pivot(state, gait, p)
+        held = self._passive_pressure(state, body)
+        if held is not None:
+            segments = tuple(segment.moved(held - segments[0].start) for segment in segments)
         dcm_reference = backward(segments, end, self.frequency)
 
         # Pivot: feedback of the error of the DCM, with the zero-moment point within the base of support.
@@ -145,6 +155,8 @@ class StepPlanner:
         pivot, lead = segments[0].start + (1.0 + gain) * (dcm - dcm_reference), pivot_lead(state, gait)
         zmp = self._clamp(state, pivot - lead, heel_is_up)
         pivot = zmp + lead
+        if held is not None:
+            zmp = pivot = held
 
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
@@ -191,6 +203,17 @@ class StepPlanner:
         return next_state, self._reference(
             state, body, balance, com_height, support, feet, foothold.position, command.forward
         )
+
+    def _passive_pressure(self, state: PlannerState, body: BodyState) -> complex | None:
+        """Center of pressure under a foot that alone supports the body, and that no ankle muscles turn; else None.
+
+        Its spring, and not the planner, decides on it.
+        """
+        foot = body.foot(state.stance)
+        is_passive = state.phase is Phase.SINGLE_SUPPORT and state.stance in self._passive_ankles
+        if not is_passive or foot.force < MIN_FORCE:
+            return None
+        return complex(foot.pressure[0], foot.pressure[1])
 
     def _clamp(self, state: PlannerState, zmp: complex, heel_is_up: bool = False) -> complex:
         """The zero-moment point, limited to the base of support."""

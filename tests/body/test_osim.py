@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RotationMatrix
 
+from humanwalk.body.devices import AnkleProsthesis, HipExoskeleton
+from humanwalk.body.impairments import ShortLeg, StiffKnee
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.loads import Backpack
 from humanwalk.body.markers import markers
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW
 from humanwalk.body.osim import to_osim
@@ -16,11 +20,62 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 
 SUBJECT = Subject(mass=60.0, stature=1.6)
+EQUIPPED = Subject(
+    62.0,
+    1.65,
+    "female",
+    loads=(Backpack(8.0),),
+    impairments=(ShortLeg(0.02, "Left"), StiffKnee(side="Left")),
+    devices=(AnkleProsthesis(), HipExoskeleton()),
+)
+SUBJECTS = {"scaled": SUBJECT, "girl": Subject(26.0, 1.28, "female", 8.0), "equipped": EQUIPPED}
 
 
 @pytest.fixture(scope="module")
 def text() -> str:
     return to_osim(SUBJECT.skeleton)
+
+
+def vectors(text: str | None) -> list[float]:
+    return [float(word) for word in (text or "").split()]
+
+
+@pytest.mark.parametrize("subject", SUBJECTS.values(), ids=SUBJECTS.keys())
+def test_masses_centers_and_moments_of_inertia_are_the_subjects(subject: Subject) -> None:
+    bodies = {body.get("name"): body for body in ET.fromstring(to_osim(subject.skeleton)).iter("Body")}
+    assert len(bodies) == len(subject.skeleton.segments)
+    for segment in subject.skeleton.segments:
+        body = bodies[segment.name]
+        assert float(body.findtext("mass") or "") == pytest.approx(segment.mass)
+        assert vectors(body.findtext("mass_center")) == pytest.approx(R_OW @ segment.com, abs=1e-9)
+        moments = vectors(body.findtext("inertia"))[:3]
+        assert moments == pytest.approx(np.abs(R_OW) @ segment.inertia, rel=1e-8)
+
+
+@pytest.mark.parametrize("subject", SUBJECTS.values(), ids=SUBJECTS.keys())
+def test_segments_have_the_subjects_lengths_and_markers_its_skin(subject: Subject) -> None:
+    skeleton, model = subject.skeleton, ET.fromstring(to_osim(subject.skeleton))
+    joints = {joint.get("name"): joint for joint in model.iter("CustomJoint")}
+    for joint in skeleton.joints:
+        (offset,) = joints[joint.name].iter("PhysicalOffsetFrame")
+        assert vectors(offset.findtext("translation")) == pytest.approx(R_OW @ joint.origin, abs=1e-9)
+    places = {marker.get("name"): vectors(marker.findtext("location")) for marker in model.iter("Marker")}
+    for marker in markers(skeleton):
+        assert places[marker.name] == pytest.approx(R_OW @ marker.position, abs=1e-9)
+
+
+def test_springs_of_a_prosthesis_are_forces_and_a_locked_knee_has_no_range() -> None:
+    model, skeleton = ET.fromstring(to_osim(EQUIPPED.skeleton)), EQUIPPED.skeleton
+    springs = {spring.findtext("coordinate"): spring for spring in model.iter("SpringGeneralizedForce")}
+    ankle = springs["ankle_angle_r"]
+    joint = skeleton.joint(LEGS["Right"].ankle)
+    assert float(ankle.findtext("stiffness") or "") == joint.stiffness > 0.0
+    assert float(ankle.findtext("rest_length") or "") == pytest.approx(joint.rest_angle)
+    assert len(springs) == sum(joint.stiffness > 0.0 for joint in skeleton.joints)
+    ranges = {found.get("name"): vectors(found.findtext("range")) for found in model.iter("Coordinate")}
+    low, high = ranges["knee_angle_l"]
+    assert abs(high - low) < 0.01
+    assert not list(ET.fromstring(to_osim(SUBJECT.skeleton)).iter("SpringGeneralizedForce"))
 
 
 def test_it_has_the_bodies_joints_and_markers_of_the_skeleton(text: str) -> None:

@@ -7,12 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body import human
+from humanwalk.body.devices import AnkleProsthesis
 from humanwalk.body.impairments import HipContracture, ShortLeg, StiffKnee
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
-from humanwalk.body.upright import knee_flexions, upright
+from humanwalk.body.upright import knee_flexions, passive_ankles, upright
 from humanwalk.sides import SIDES, Side
 
 
@@ -53,6 +54,11 @@ def test_the_shorter_leg_counts_on_either_side() -> None:
         assert short.ankle_height == pytest.approx(healthy.ankle_height)
         # The lighter shank raises the center of mass by less than 4 mm.
         assert short.com_height == pytest.approx(healthy.com_height - 0.03, abs=0.004)
+
+
+def test_a_prosthesis_leaves_its_ankle_without_muscles() -> None:
+    assert passive_ankles(body_plant(Subject())) == ()
+    assert passive_ankles(body_plant(Subject(devices=(AnkleProsthesis(side="Left"),)))) == ("Left",)
 
 
 def test_a_knee_locked_in_flexion_makes_a_leg_shorter() -> None:

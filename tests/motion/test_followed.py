@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from humanwalk.body import contact_spheres
+from humanwalk.body.impairments import ShortLeg, StiffKnee
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import SPINE_PITCH_JOINTS
 from humanwalk.body.opensim_names import COORDINATES
@@ -22,6 +23,7 @@ from humanwalk.terrain import Plane
 
 TIME = np.arange(0, 1.001, 0.02)
 LEVEL = Plane()
+REFERENCE = Subject()
 
 
 def squat(depth: float = 0.6) -> dict[str, Array]:
@@ -38,9 +40,9 @@ def write_mot(path: Path, columns: dict[str, Array]) -> Path:
     return path
 
 
-def read(path: Any, mapping: Any = None, terrain: Any = LEVEL) -> RecordedMotion:
+def read(path: Any, mapping: Any = None, terrain: Any = LEVEL, subject: Subject = REFERENCE) -> RecordedMotion:
     mapping = load_as(MotionMapping, mapping) if mapping else MotionMapping()
-    return followed_motion(path, mapping, Subject(), terrain, ease_in=0.3)
+    return followed_motion(path, mapping, subject, terrain, ease_in=0.3)
 
 
 def refusal(path: Path, mapping: Path | None = None) -> str:
@@ -156,6 +158,31 @@ def test_without_a_recorded_path_the_stance_foot_does_not_slide(squat_file: Path
     assert drop == pytest.approx((thigh + shank) * (1 - np.cos(0.6)), abs=1e-6)
     for row in (0, 25, -1):
         assert clearance(motion, joints, row) == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "subject",
+    [Subject(50.0, 1.5), Subject(62.0, 1.7, "female"), Subject(20.0, 1.1, "male", 6.0), Subject(95.0, 2.0, "male")],
+    ids=str,
+)
+def test_recorded_angles_are_followed_on_the_subjects_own_legs(squat_file: Path, subject: Subject) -> None:
+    motion, skeleton, row = read(squat_file, subject=subject), subject.skeleton, -1
+    reference = read(squat_file)
+    np.testing.assert_array_equal(motion.angles, reference.angles)
+    drop = motion.pelvis_position[0, 2] - motion.pelvis_position[row, 2]
+    assert drop == pytest.approx(skeleton.leg_length * (1 - np.cos(0.6)), rel=1e-6)
+    assert motion.pelvis_position[0, 2] == pytest.approx(skeleton.root_height, abs=1e-6)
+
+
+def test_the_longer_leg_stands_on_the_ground(squat_file: Path) -> None:
+    motion = read(squat_file, subject=Subject(impairments=(ShortLeg(0.03),)))
+    drop = motion.pelvis_position[0, 2] - motion.pelvis_position[-1, 2]
+    assert drop == pytest.approx((0.4242 + 0.439767) * (1 - np.cos(0.6)), abs=1e-6)
+
+
+def test_angles_beyond_the_range_of_a_stiff_knee_are_refused(squat_file: Path) -> None:
+    with pytest.raises(ParameterError, match="RightLegTibiaMotion"):
+        read(squat_file, subject=Subject(impairments=(StiffKnee(),)))
 
 
 def test_recorded_path_starts_above_the_origin_with_the_soles_on_the_ground(tmp_path: Path, joints: JointMap) -> None:

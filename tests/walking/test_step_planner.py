@@ -31,6 +31,8 @@ PARAMETERS = StepPlannerParameters()
 LEVEL = Plane()
 
 
+WALK = Command(0.8, 0.0, 0.0)
+
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 
 
@@ -207,6 +209,41 @@ def test_the_zero_moment_point_stays_over_the_stance_foot() -> None:
             offset = reference.zmp - state.stance_foot.position
             assert -support.back - 1e-9 <= offset.real <= support.front + 1e-9
             assert abs(offset.imag) <= support.half_width + 1e-9
+
+
+def in_single_support() -> tuple[PlannerState, BodyState]:
+    """A state of a walk at 0.8 m/s in which one foot alone supports the body."""
+    return next(
+        (state, body)
+        for time, state, _, body in pendulum_walk(planner(), walk_at(0.8), 2.0)
+        if time > 1.2 and state.phase is Phase.SINGLE_SUPPORT and state.elapsed > 0.25
+    )
+
+
+def test_the_pressure_under_a_passive_foot_is_where_its_spring_puts_it() -> None:
+    """Where it is farther ahead, the body falls forward less, and the step is shorter."""
+    state, body = in_single_support()
+    side, footholds = state.stance, []
+    passive, healthy, other = (
+        StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
+        for passive_ankles in ((side,), (), (other_side(side),))
+    )
+    for ahead in (-0.05 - 0.02j, 0j, 0.05, 0.1 + 0.02j):
+        place = state.stance_foot.position + ahead
+        pressure = np.array((place.real, place.imag, 0.0))
+        for force in (700.0, 0.0):
+            there = replace(body.foot(side), pressure=pressure, force=force)
+            plans = [
+                plan.update(state, replace(body, right=there) if side == "Right" else replace(body, left=there), WALK)[
+                    1
+                ]
+                for plan in (passive, healthy, other)
+            ]
+            assert plans[2].zmp == plans[1].zmp
+            assert plans[0].zmp == pytest.approx(place if force else plans[1].zmp)
+            if force:
+                footholds.append(plans[0].foothold.real)
+    assert (np.diff(footholds) < 0.0).all()
 
 
 def test_a_pendulum_with_angular_momentum_walks_as_commanded_and_its_pressure_rolls_forward() -> None:
