@@ -42,6 +42,12 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("subjects_adults", 100),
         ("subjects_children", 40),
         ("subjects_loads", 40),
+        ("terrain", 400),
+        ("terrain_rough", 40),
+        ("terrain_rough_blind", 40),
+        ("terrain_stones", 40),
+        ("terrain_course", 40),
+        ("terrain_pushes", 80),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
@@ -113,3 +119,10 @@ def test_a_study_without_a_finished_run_is_not_shown(short_study: Study, tmp_pat
         pass
     result: Any = CliRunner().invoke(app, ["study", "show", str(folder)])
     assert "no run has finished; allowed: one or more; run the study first" in str(result.exception)
+
+
+@pytest.mark.parametrize("name", ["terrain_rough", "terrain_rough_blind", "terrain_stones", "terrain_course"])
+def test_every_walk_on_random_ground_has_its_own_ground_and_its_own_noise(name: str) -> None:
+    points = load_study(name).points
+    for factor in points[0]:
+        assert sorted(point[factor] for point in points) == list(range(1, 41))
