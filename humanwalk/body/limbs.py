@@ -105,6 +105,8 @@ PELVIS = "Pelvis"
 """The floating root; its frame is at hip height."""
 CHEST = "Ribs"
 HEAD = "Head"
+HEAD_YAW = "Head_Motion"
+"""Joint that turns the head; positive to the left."""
 
 
 def other_side(side: Side) -> Side:

@@ -92,6 +92,9 @@ class BalancedController:
     elbow_flexion: float = quantity(0.35, "rad", 0.0, 1.5)
     """Flexion of the elbows while the arms hang."""
 
+    wrist_flexion: float = quantity(0.0, "rad", -0.5, 1.0)
+    """Palmar flexion of the wrists."""
+
     control_period: float = quantity(0.006, "s", 0.001, 0.01)
     """Time between two plans and solutions: three steps of the plant. The tables of docs/balance.md hold for it."""
 
@@ -143,7 +146,7 @@ class BalancedController:
         """Standing on bent legs, the soles parallel to the ground along x; it leans against known loads."""
         lean = load_lean(subject)
         slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
-        angles = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        angles = self._hanging_arms()
         for side, flexion in knee_flexions(subject.skeleton, 2.0 * START_FLEXION).items():
             leg = LEGS[side]
             angles |= {leg.hip_flexion: 0.5 * flexion, leg.knee: flexion, leg.ankle: 0.5 * flexion + slope + lean}
@@ -177,7 +180,7 @@ class BalancedController:
             command=command.GetOutputPort("command"),
         )
         tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
-        posture = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        posture = self._hanging_arms()
         style = fitted.style.task(world.subject, JointMap.of(world.model))
         controller = world.add(
             "controller",
@@ -189,6 +192,11 @@ class BalancedController:
             world.builder.Connect(world.known_assistance, controller.GetInputPort("assistance"))
         state, time, torque = map(controller.GetOutputPort, ("desired_state", "sample_time", "torque"))
         return Command(state, time, feedforward=torque)
+
+    def _hanging_arms(self) -> dict[str, float]:
+        """Angles [rad] of hanging arms by joint."""
+        elbows = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+        return elbows | {arm.wrist: self.wrist_flexion for arm in ARMS.values()}
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         """Raise ParameterError: a plan depends on the simulated state."""

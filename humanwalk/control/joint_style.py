@@ -36,8 +36,14 @@ class JointStyle:
         self._q = {side: joints.q[place] for side, place in places.items()}
         self._v = {side: joints.v[place] for side, place in places.items()}
 
-    def tasks(self, body: Dynamics, reference: WalkingReference) -> Iterator[Task]:
-        """The task of each leg at one state; none in standing or at a speed that is not forward."""
+    def tasks(self, body: Dynamics, reference: WalkingReference, radius: float) -> Iterator[Task]:
+        """The task of each leg at one state; none in standing or at a speed that is not forward.
+
+        Args:
+            body: The body at this state.
+            reference: Phase and speed of the step.
+            radius: Length by which angular accelerations are weighed against those of points [m].
+        """
         gains = self._gains
         share = min(max(reference.speed, 0.0) / self._curves.lowest_speed, 1.0)
         if not reference.is_stepping or share == 0.0:
@@ -48,4 +54,4 @@ class JointStyle:
             q, v = body.q[self._q[side]], body.v[self._v[side]]
             desired = phase_rate**2 * motion.curvature
             desired += gains.stiffness * (motion.angle - q) + gains.damping * (phase_rate * motion.slope - v)
-            yield Task(np.eye(body.v.size)[self._v[side]], desired, share * gains.weight)
+            yield Task(np.eye(body.v.size)[self._v[side]], desired, share * radius**2 * gains.weight)

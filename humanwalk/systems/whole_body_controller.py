@@ -8,7 +8,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
-from humanwalk.body.limbs import ARMS, LEGS
+from humanwalk.body.limbs import ARMS, HEAD_YAW, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
@@ -75,6 +75,7 @@ class WholeBodyController(LeafSystem):
             [names.index(joint) for joint in (ARMS[side].shoulder_flexion, ARMS[side].elbow, LEGS[side].toes)]
             for side in SIDES
         ]
+        self._head = names.index(HEAD_YAW)
         self._is_held = np.isin(names, [joint for leg in LEGS.values() for joint in leg.foot_joints])
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
@@ -96,7 +97,8 @@ class WholeBodyController(LeafSystem):
         body = self._assisted(context, self._dynamics.at(self._state.Eval(context)))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
-        style = self._style.tasks(body, reference) if self._style is not None else ()
+        radius = self._qp.parameters.rotation_radius
+        style = self._style.tasks(body, reference, radius) if self._style is not None else ()
         solution = self._qp.solve(body, reference, posture, style)
 
         _, failures, in_a_row = context.get_discrete_state(self._status).value()
@@ -125,7 +127,7 @@ class WholeBodyController(LeafSystem):
         return body._replace(h=h)
 
     def _posture(self, reference: WalkingReference) -> Posture:
-        """Rest posture with swinging arms and the toes of the reference."""
+        """Rest posture with swinging arms, and with head and toes of the reference."""
         angle, rate = self._rest.copy(), np.zeros_like(self._rest)
         feet = (reference.foot(side) for side in SIDES)
         for (shoulder, elbow, toes), (swing, swing_rate), foot in zip(
@@ -135,4 +137,5 @@ class WholeBodyController(LeafSystem):
             rate[shoulder] = swing_rate
             angle[elbow] += ELBOW_PER_SHOULDER * max(swing, 0.0)
             angle[toes], rate[toes] = foot.toes
+        angle[self._head], rate[self._head] = reference.head_yaw
         return Posture(angle, rate)

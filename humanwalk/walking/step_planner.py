@@ -288,6 +288,7 @@ class StepPlanner:
             pelvis_yaw=facing - rotation.pelvis * lead,
             chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((arm, arm_rate), (-arm, -arm_rate)),
+            head_yaw=(-rotation.head * lead, -rotation.head * lead_rate),
             foothold=foothold,
             step_duration=timing.step,
             stance=state.stance,

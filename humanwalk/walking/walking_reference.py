@@ -178,6 +178,7 @@ class WalkingReference:
         right, left: The feet.
         pelvis_yaw, chest_yaw: [rad].
         shoulder_flexion: Angle and rate, of the right and of the left shoulder [rad, rad/s].
+        head_yaw: Angle and rate of the head relative to the chest [rad, rad/s].
         foothold: Where the ankle of the swinging foot will be [m].
         step_duration: From touchdown to touchdown of the other foot [s].
         stance: The stance foot of the step.
@@ -200,6 +201,7 @@ class WalkingReference:
     shoulder_flexion: tuple[tuple[float, float], tuple[float, float]]
     foothold: complex
     step_duration: float = math.inf
+    head_yaw: tuple[float, float] = (0.0, 0.0)
     stance: Side = "Left"
     speed: float = 0.0
     ground: Ground = Plane()

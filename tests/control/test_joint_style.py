@@ -39,7 +39,7 @@ def test_each_leg_follows_its_own_phase(dynamics: BodyDynamics, style: JointStyl
     """Left stance at 20 % of its cycle, the right leg at 70 %: upright at rest, the angles are the errors."""
     body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
     rate = 2.0 * np.pi * 0.5 / STEP
-    for task, side, phase in zip(style.tasks(body, WALK), ("Right", "Left"), (0.7, 0.2), strict=True):
+    for task, side, phase in zip(style.tasks(body, WALK, 1.0), ("Right", "Left"), (0.7, 0.2), strict=True):
         cosine, sine = np.cos(2.0 * np.pi * phase), np.sin(2.0 * np.pi * phase)
         wanted = (GAINS.stiffness * cosine - GAINS.damping * rate * sine - rate**2 * cosine) * np.array((0.3, 0.2, 0.1))
         assert task.acceleration == pytest.approx(wanted, abs=1e-6)
@@ -52,15 +52,16 @@ def test_in_standing_and_backward_there_is_no_style(
     dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
 ) -> None:
     body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
-    assert list(style.tasks(body, replace(WALK, phase=Phase.STAND))) == []
-    assert list(style.tasks(body, replace(WALK, speed=-0.5))) == []
+    assert list(style.tasks(body, replace(WALK, phase=Phase.STAND), 1.0)) == []
+    assert list(style.tasks(body, replace(WALK, speed=-0.5), 1.0)) == []
 
 
-def test_below_the_speed_of_the_curves_the_weight_decreases(
+def test_the_weight_decreases_below_the_speed_of_the_curves_and_with_the_size_of_the_body(
     dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
 ) -> None:
     body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
-    assert [task.weight for task in style.tasks(body, replace(WALK, speed=0.25))] == [1.0, 1.0]
+    assert [task.weight for task in style.tasks(body, replace(WALK, speed=0.25), 1.0)] == [1.0, 1.0]
+    assert [task.weight for task in style.tasks(body, WALK, 0.5)] == [1.0, 1.0]
 
 
 def test_phases_of_both_feet_are_half_a_cycle_apart() -> None:

@@ -1,5 +1,7 @@
 """The whole-body controller as a system: ports, order of the joints, and QP failures."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pydrake.multibody.plant import MultibodyPlant
@@ -7,7 +9,7 @@ from pydrake.systems.framework import Context
 
 from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import ARMS, LEGS
+from humanwalk.body.limbs import ARMS, HEAD_YAW, LEGS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
@@ -110,3 +112,13 @@ def test_after_qp_failures_the_last_torque_is_held_for_a_while(
     controller.GetInputPort("state").FixValue(context, standing)
     updated(controller, context)
     assert controller.GetOutputPort("status").Eval(context) == pytest.approx([1, 7, 0])
+
+
+def test_the_head_turns_as_planned(
+    controller: WholeBodyController, joints: JointMap, standing: Array, plan: WalkingReference
+) -> None:
+    """Neck and head have prescribed accelerations: from rest, a turned head has the rate of the first period."""
+    context = context_with(controller, standing, replace(plan, head_yaw=(0.1, 0.0)))
+    updated(controller, context)
+    _, rate = np.split(controller.GetOutputPort("desired_state").Eval(context), 2)
+    assert rate[joints.names.index(HEAD_YAW)] == pytest.approx(PERIOD * WholeBodyParameters().arms.stiffness * 0.1)

@@ -385,3 +385,11 @@ def test_on_stairs_the_walker_takes_one_tread_a_step() -> None:
     rises = [after.stance_foot.ground - before.stance_foot.ground for before, after in pairwise(landed)]
     assert max(rises) == pytest.approx(0.15)
     assert sum(rises) >= 5 * 0.15
+
+
+def test_a_head_that_turns_against_the_chest_is_steady_in_space() -> None:
+    rotation = replace(PARAMETERS.rotation, head=PARAMETERS.rotation.chest)
+    walk = pendulum_walk(planner(parameters=replace(PARAMETERS, rotation=rotation)), walk_at(1.0), 4.0)
+    chests = [(reference.chest_yaw, reference.head_yaw[0]) for _, _, reference, _ in walk]
+    assert max(abs(chest) for chest, _ in chests) > 0.03
+    assert all(chest + head == pytest.approx(0.0, abs=1e-9) for chest, head in chests)
