@@ -139,8 +139,9 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, d
     first = next(name for name, field in known.items() if "unit" in field.metadata)
     fields: dict[str, Any] = {}
     rest = words[len(tag) :].split()
-    if rest and rest[0] in ("right", "left", "both"):
-        fields["side"] = rest.pop(0).capitalize()
+    for word in [word for word in rest if word in ("right", "left", "both")]:
+        fields["side"] = word.capitalize()
+        rest.remove(word)
     if rest and rest[-1] == "unknown" and "known" in known:
         fields["known"] = False
         rest.pop()

@@ -179,6 +179,7 @@ def test_impairments_and_devices_are_described() -> None:
         ShortLeg(0.03),
         HipContracture(0.2, 20.0, side="Both", known=False),
     )
+    assert changed(impairment=["short leg 3 cm left"]).subject.impairments == (ShortLeg(0.03, "Left"),)
     assert changed(impairment=["joint joint elbow, upper 90 deg"]).subject.impairments == (
         JointImpairment("elbow", upper=math.radians(90.0)),
     )
