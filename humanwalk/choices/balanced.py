@@ -164,6 +164,7 @@ class BalancedController:
             )
         fitted = self.fitted(world.subject)
         command = world.add("command", world.sources.command(self.command))
+        errors = np.random.default_rng((world.seed, KNOWLEDGE_ERRORS))
         planner = world.add(
             "planner",
             GaitPlanner(
@@ -172,7 +173,7 @@ class BalancedController:
                 self.first_swing,
                 self.control_period,
                 sole_extent(world.subject.skeleton),
-                self.knowledge.ground(world.terrain, np.random.default_rng((world.seed, KNOWLEDGE_ERRORS))),
+                self.knowledge.ground(world.terrain, errors, fitted.planner.feeling),
             ),
             com=world.port("body_observer", "com"),
             ankles=world.port("body_observer", "ankles"),

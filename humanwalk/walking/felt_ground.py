@@ -14,36 +14,42 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.numerics import Array
+from humanwalk.quantity import quantity
 from humanwalk.terrain.corrected import CorrectedGround
 from humanwalk.terrain.terrain import Ground, Touch
-
-HEEL_ONLY = 0.02
-"""Distance of the center of pressure behind the ankle from which on only the heel touches the ground [m]."""
-
-MISSED = 0.02
-"""Distance by which the pressure misses the planned one if only the heel touches the ground [m] (our choice)."""
 
 ALIGNED = 0.04
 """Angle between sole and expected ground up to which a foot should touch it with heel and ball [rad]."""
 
-SEARCH_RATE = 1.5
-"""Rate at which the ground is expected lower under a ball that does not touch it [rad/s] (our choice)."""
-
-SMOOTHING_TIME = 0.015
-"""Time constant with which slope and height under a foot follow what is felt [s] (our choice)."""
-
-NEAR = 0.2
-"""Distance from an anchor up to which its own slopes hold [m]: the length of a sole ahead of the ankle (our choice)."""
-
-TREND_TIME = 0.5
-"""Time constant with which the slopes beyond follow those under the feet [s]: a step (our choice)."""
-
 MAX_SLOPE = 0.35
 """Largest slope that is felt, relative to the known ground."""
 
-BELOW = 0.012
-"""Distance below a sole without load at which the ground is expected [m]: more than `contact_height`, so that the foot
-goes on down."""
+
+@dataclass(frozen=True)
+class Feeling:
+    """How the feet feel the ground."""
+
+    heel_only: float = quantity(0.02, "m", 0.0, 0.2)
+    """Distance of the center of pressure behind the ankle from which on only the heel touches the ground."""
+
+    missed: float = quantity(0.02, "m", 0.0, 0.2)
+    """Distance by which the pressure misses the planned one if only the heel touches the ground (our choice)."""
+
+    search_rate: float = quantity(1.5, "rad/s", 0.0, 10.0)
+    """Rate at which the ground is expected lower under a ball that does not touch it (our choice)."""
+
+    smoothing_time: float = quantity(0.015, "s", 0.0, 1.0)
+    """Time constant with which slope and height under a foot follow what is felt (our choice)."""
+
+    near: float = quantity(0.2, "m", 0.01, 1.0)
+    """Distance from an anchor up to which its own slopes hold: the length of a sole ahead of the ankle (our choice)."""
+
+    trend_time: float = quantity(0.5, "s", 0.01, 10.0)
+    """Time constant with which the slopes beyond follow those under the feet: a step (our choice)."""
+
+    below: float = quantity(0.012, "m", 0.0, 0.2)
+    """Distance below a sole without load at which the ground is expected: more than `contact_height`, so that the foot
+    goes on down."""
 
 
 class Anchor(NamedTuple):
@@ -74,6 +80,9 @@ class FeltGround(CorrectedGround):
     unevenness: float = 0.0
     """See `Ground.unseen` [m]."""
 
+    feeling: Feeling = Feeling()
+    """How the feet feel the ground."""
+
     @property
     def unseen(self) -> float:
         return self.unevenness
@@ -90,13 +99,14 @@ class FeltGround(CorrectedGround):
         nearest = np.square(away).sum(axis=-1).argmin(axis=-1)
         off = np.take_along_axis(away, nearest[..., None, None], axis=-2)[..., 0, :]
         distance = np.hypot(off[..., 0], off[..., 1])[..., None]
-        near = off * np.minimum(1.0, NEAR / np.maximum(distance, NEAR))
+        reach = self.feeling.near
+        near = off * np.minimum(1.0, reach / np.maximum(distance, reach))
         rise = (gradients[nearest] * near + self.trend * (off - near)).sum(axis=-1)
-        return offsets[nearest] + rise, np.where(distance <= NEAR, gradients[nearest], self.trend)
+        return offsets[nearest] + rise, np.where(distance <= reach, gradients[nearest], self.trend)
 
     def felt(self, touches: Sequence[Touch], dt: float) -> FeltGround:
         """The ground with what the feet feel within a control period [s]."""
-        anchors, trend, share = list(self.anchors), np.array(self.trend), dt / (dt + TREND_TIME)
+        anchors, trend, share = list(self.anchors), np.array(self.trend), dt / (dt + self.feeling.trend_time)
         for touch in touches:
             anchor = self._anchor(touch, dt)
             anchors[touch.foot] = anchor
@@ -105,21 +115,22 @@ class FeltGround(CorrectedGround):
         return replace(self, anchors=tuple(anchors), trend=(a, b))
 
     def _anchor(self, touch: Touch, dt: float) -> Anchor:
-        share = dt / (dt + SMOOTHING_TIME)
+        feeling = self.feeling
+        share = dt / (dt + feeling.smoothing_time)
         if touch.pressure is None:
             # The ground is lower than expected as long as the sole does not touch it.
             xy = touch.heel[:2]
-            drop = min(0.0, float(touch.heel[2] - BELOW - self.height(xy)))
+            drop = min(0.0, float(touch.heel[2] - feeling.below - self.height(xy)))
             return self._moved(xy, drop, np.zeros(2))
         xy = touch.pressure[:2]
         n = self.axes(xy)[2]
         level_error = float(touch.pressure[2] - self.height(xy))
         slopes = np.zeros(2)
         pitch = float(touch.forward @ n)
-        if touch.pressure_ahead > -HEEL_ONLY and not touch.is_rolling:
+        if touch.pressure_ahead > -feeling.heel_only and not touch.is_rolling:
             slopes = share * (-touch.normal[:2] / touch.normal[2] + n[:2] / n[2])
-        elif touch.pressure_ahead <= -HEEL_ONLY < touch.planned_ahead - MISSED and abs(pitch) < ALIGNED:
-            slopes = -SEARCH_RATE * dt * touch.forward[:2]
+        elif touch.pressure_ahead <= -feeling.heel_only < touch.planned_ahead - feeling.missed and abs(pitch) < ALIGNED:
+            slopes = -feeling.search_rate * dt * touch.forward[:2]
         return self._moved(xy, share * level_error, slopes)
 
     def _moved(self, xy: Array, height: float, slopes: Array) -> Anchor:

@@ -11,7 +11,10 @@ from humanwalk.quantity import quantity
 from humanwalk.terrain.corrected import CorrectedGround
 from humanwalk.terrain.plane import Plane
 from humanwalk.terrain.terrain import Ground
-from humanwalk.walking.felt_ground import FeltGround
+from humanwalk.walking.felt_ground import Feeling, FeltGround
+
+FEELING = Feeling()
+"""How the feet of the reference body feel the ground."""
 
 WAVES = 12
 """Number of waves of a random error of the ground."""
@@ -20,7 +23,7 @@ WAVES = 12
 class TerrainKnowledge(Protocol):
     """One way to know the terrain: a dataclass whose fields are the group of the scenario that its tag opens."""
 
-    def ground(self, terrain: Ground, random: np.random.Generator) -> Ground:
+    def ground(self, terrain: Ground, random: np.random.Generator, feeling: Feeling = FEELING) -> Ground:
         """Return what planner and whole-body program know of a terrain at the start."""
 
 
@@ -28,7 +31,7 @@ class TerrainKnowledge(Protocol):
 class ExactKnowledge:
     """The terrain itself."""
 
-    def ground(self, terrain: Ground, random: np.random.Generator) -> Ground:
+    def ground(self, terrain: Ground, random: np.random.Generator, feeling: Feeling = FEELING) -> Ground:
         """See `TerrainKnowledge`."""
         return terrain
 
@@ -43,9 +46,9 @@ class NoisyKnowledge:
     slope: float = quantity(0.02, "rad", 0.0, 0.3)
     """Standard deviation of the error of the slope along any direction."""
 
-    def ground(self, terrain: Ground, random: np.random.Generator) -> Ground:
+    def ground(self, terrain: Ground, random: np.random.Generator, feeling: Feeling = FEELING) -> Ground:
         """See `TerrainKnowledge`."""
-        return FeltGround(NoisyGround(terrain, Waves.random(self.height, self.slope, random)))
+        return FeltGround(NoisyGround(terrain, Waves.random(self.height, self.slope, random)), feeling=feeling)
 
 
 @dataclass(frozen=True)
@@ -55,9 +58,9 @@ class BlindKnowledge:
     unevenness: float = quantity(0.03, "m", 0.0, 0.1)
     """Height by which the ground may stand out of what the feet feel; the swinging foot is lifted by so much more."""
 
-    def ground(self, terrain: Ground, random: np.random.Generator) -> Ground:
+    def ground(self, terrain: Ground, random: np.random.Generator, feeling: Feeling = FEELING) -> Ground:
         """See `TerrainKnowledge`."""
-        return FeltGround(Plane(), unevenness=self.unevenness)
+        return FeltGround(Plane(), unevenness=self.unevenness, feeling=feeling)
 
 
 KNOWLEDGE: dict[str, type[TerrainKnowledge]] = {

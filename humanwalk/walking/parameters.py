@@ -7,6 +7,7 @@ from humanwalk.walking.base_of_support import BaseOfSupport
 from humanwalk.walking.com_height import ComHeight
 from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.counter_rotation import CounterRotation
+from humanwalk.walking.felt_ground import Feeling
 from humanwalk.walking.foot_placement import StepPlacement
 from humanwalk.walking.foot_rockers import FootRockers
 from humanwalk.walking.footholds import FootholdSearch
@@ -31,6 +32,7 @@ class StepPlannerParameters:
     height: ComHeight = ComHeight()
     path: PathFollowing = PathFollowing()
     rotation: CounterRotation = CounterRotation()
+    feeling: Feeling = Feeling()
 
     stop_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Commanded speed up to which a step is the last one."""

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import Touch
-from humanwalk.walking.felt_ground import BELOW, MAX_SLOPE, NEAR, TREND_TIME, FeltGround
+from humanwalk.walking.felt_ground import MAX_SLOPE, Feeling, FeltGround
 
 DT = 0.006
 slopes = st.floats(-0.15, 0.15)
@@ -41,7 +41,7 @@ def felt(touches: tuple[Touch, ...], duration: float, ground: FeltGround | None 
 @given(slopes, slopes, heights)
 def test_a_foot_that_stands_flat_finds_the_plane_under_it(slope: float, cross_slope: float, height: float) -> None:
     plane = Plane(slope=slope, cross_slope=cross_slope)
-    ground = felt((touch_on(plane, height),), 8.0 * TREND_TIME)
+    ground = felt((touch_on(plane, height),), 8.0 * Feeling.trend_time)
     for xy in np.array(((0.0, 0.0), (0.1, 0.05), (0.6, -0.2))):
         assert ground.height(xy) == pytest.approx(plane.height(xy) + height, abs=1e-4)
         np.testing.assert_allclose(ground.axes(xy), plane.axes(xy), atol=1e-4)
@@ -49,17 +49,17 @@ def test_a_foot_that_stands_flat_finds_the_plane_under_it(slope: float, cross_sl
 
 @given(slopes)
 def test_the_slope_of_one_step_is_not_expected_far_from_the_foot(slope: float) -> None:
-    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * TREND_TIME)
+    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * Feeling.trend_time)
     assert ground.face_at(np.array((0.1, 0.0))).gradient[0] == pytest.approx(slope, rel=0.02, abs=1e-4)
     assert abs(ground.face_at(np.array((0.8, 0.0))).gradient[0]) <= 0.5 * abs(slope)
 
 
 @given(slopes, st.floats(0.0, 6.3))
 def test_its_height_does_not_jump_where_the_slopes_of_the_last_steps_begin(slope: float, angle: float) -> None:
-    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * TREND_TIME)
+    ground = felt((touch_on(Plane(slope=slope), 0.0),), 0.4 * Feeling.trend_time)
     way = np.array((math.cos(angle), math.sin(angle)))
     (place,) = (anchor.place for anchor in ground.anchors if anchor is not None)
-    before, after = (float(ground.height(np.array(place) + (NEAR + d) * way)) for d in (-1e-6, 1e-6))
+    before, after = (float(ground.height(np.array(place) + (Feeling.near + d) * way)) for d in (-1e-6, 1e-6))
     assert before == pytest.approx(after, abs=1e-6)
 
 
@@ -74,7 +74,7 @@ def test_each_foot_has_a_height_of_its_own() -> None:
 def test_under_a_landing_foot_without_load_the_ground_is_lower(gap: float) -> None:
     touch = touch_on(Plane(), -gap, pressure=None)
     ground = felt((touch,), DT)
-    assert ground.height(touch.heel[:2]) == pytest.approx(-gap - BELOW)
+    assert ground.height(touch.heel[:2]) == pytest.approx(-gap - Feeling.below)
 
 
 def test_a_foot_above_the_ground_does_not_raise_it() -> None:
