@@ -8,12 +8,12 @@ import dataclasses
 import functools
 import math
 import typing
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
 from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, tag_of
@@ -143,6 +143,19 @@ def build[T](kind: type[T], data: Mapping[str, Any]) -> T:
     return parameters
 
 
+def rebuild[T](parameters: T, data: Mapping[str, Any]) -> T:
+    """The parameters with those of their fields that a mapping has, built and checked as by `build`.
+
+    Raises:
+        ParameterError: as `build`.
+    """
+    kind: Any = type(parameters)
+    place = _Place("", kind)
+    rebuilt = _made(lambda **fields: dataclasses.replace(cast(Any, parameters), **fields), kind, data, place)
+    check(rebuilt, fields=data)
+    return cast(T, rebuilt)
+
+
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
     return yaml_text(_plain(parameters))
@@ -240,6 +253,11 @@ def _entries(value: Any, place: _Place) -> list[tuple[Any, _Place]]:
 
 
 def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
+    return _made(kind, kind, value, place)
+
+
+def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place) -> Any:
+    """What `make` returns for the fields of a dataclass that a mapping has."""
     fields = {field.name: field for field in dataclasses.fields(kind)}
     if not isinstance(value, dict):
         raise ParameterError(f"{place}: {shown(value)} is not a group of fields; allowed: {', '.join(fields)}")
@@ -267,7 +285,7 @@ def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
         else:
             arguments[key] = _build(hints[key], entry, place / name)
     try:
-        return kind(**arguments)
+        return make(**arguments)
     except ParameterError as error:
         raise ParameterError(f"{place / str(error)}") from None
 

@@ -7,7 +7,7 @@ A parameter of a scenario is a dataclass field made by `quantity`. `check` visit
 import dataclasses
 import difflib
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, cast
 
@@ -140,18 +140,21 @@ def did_you_mean(text: str, choices: Sequence[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
-def check(parameters: Any, path: str = "") -> None:
+def check(parameters: Any, path: str = "", fields: Container[str] | None = None) -> None:
     """Check every quantity of a tree of dataclasses.
 
     Args:
         parameters: Dataclass instance; nested dataclasses, and tuples and mappings of them, are visited.
         path: Dotted name of `parameters`, for the message.
+        fields: Fields of `parameters` that are checked; by default all.
 
     Raises:
         ParameterError: A number is out of its range.
     """
-    for name, value, metadata in numbers_of(parameters, path):
-        require_in_range(name, value, metadata["unit"], metadata["low"], metadata["high"])
+    for field, item, place, of_item in _parts(parameters, path, {}):
+        if fields is None or field in fields:
+            for name, value, metadata in _quantities(item, place, of_item):
+                require_in_range(name, value, metadata["unit"], metadata["low"], metadata["high"])
 
 
 def require_in_range(name: str, value: float, unit: str, low: float, high: float, *, other_units: bool = True) -> None:
@@ -177,9 +180,13 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
     return f"the nearest allowed value is {nearest:g}"
 
 
-def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Metadata]]:
     """Dotted name, value and metadata (unit, low, high) of every quantity in a tree of dataclasses; see `check`."""
-    return ((name, value, metadata) for name, value, metadata in _leaves(parameters, path, {}) if "unit" in metadata)
+    return _quantities(parameters, path, {})
+
+
+def _quantities(value: Any, path: str, metadata: Metadata) -> Iterator[tuple[str, float, Metadata]]:
+    return (leaf for leaf in _leaves(value, path, metadata) if "unit" in leaf[2])
 
 
 def _leaves(value: Any, path: str, metadata: Mapping[str, Any]) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, replace_value
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, rebuild, replace_value
 from humanwalk.quantity import ParameterError, choice, choices_by_name, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.shipped_files import named_file, shipped_files
@@ -102,10 +102,11 @@ class Study:
             ParameterError: a value that cannot be used; the message begins with the point.
         """
         try:
-            data = dict(self.base)
-            for name, value in self.overrides(point).items():
+            data, values = dict(self.base), self.overrides(point)
+            for name, value in values.items():
                 replace_value(Scenario, data, name, value)
-            return build(Scenario, data)
+            sections = {name.partition(".")[0] for name in (*self.set, *values)}
+            return rebuild(self.scenario, {name: data[name] for name in data if name in sections})
         except ParameterError as error:
             at = ", ".join(f"{name}: {shown(value)}" for name, value in point.items())
             raise ParameterError(f"point ({printable(at, 300)}): {error}") from None
