@@ -1,11 +1,14 @@
 """Every number of a scenario, alone, at both ends of its range: it walks, or is refused in one line."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from humanwalk.body.devices import DEVICES
+from humanwalk.body.impairments import IMPAIRMENTS
 from humanwalk.body.loads import LOADS
 from humanwalk.body.opensim_names import COORDINATES
 from humanwalk.contact.asperity import Knot
@@ -46,13 +49,21 @@ NEEDED = {
 }
 """What is set with a number whose name begins so, for it to have an effect."""
 
+
+def ends_of_choices(kinds: Mapping[str, type[Any]]) -> list[tuple[str, str]]:
+    """As `ends`, of several kinds by tag; the names begin with the tag."""
+    return [(f"{tag}.{name}", value) for tag, kind in kinds.items() for name, value in ends(kind)]
+
+
 ENTRIES = {
-    "subject.loads": [(f"{tag}.{name}", value) for tag, kind in LOADS.items() for name, value in ends(kind)],
+    "subject.loads": ends_of_choices(LOADS),
+    "subject.impairments": ends_of_choices(IMPAIRMENTS),
+    "subject.devices": ends_of_choices(DEVICES),
     "pushes.given": ends(Push),
     "controller.balanced.command.points": ends(CommandPoint),
     "contact.asperity.pressure_multiplier": ends(Knot),
     "contact.asperity.time_multiplier": ends(Knot),
-    "terrain.course.pieces": [(f"{tag}.{name}", value) for tag, kind in PIECES.items() for name, value in ends(kind)],
+    "terrain.course.pieces": ends_of_choices(PIECES),
 }
 """Numbers of the entries of lists; those of one out of several kinds follow its tag."""
 

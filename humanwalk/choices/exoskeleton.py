@@ -23,8 +23,6 @@ def add_exoskeleton(world: World) -> OutputPort | None:
         Exoskeleton(world.plant, assistance, SWITCH_PERIOD),
         foot_forces=world.port("foot_contact", "foot_forces"),
     )
-    world.builder.Connect(
-        exoskeleton.GetOutputPort("generalized_force"), world.plant.get_applied_generalized_force_input_port()
-    )
+    world.generalized_forces.append(exoskeleton.GetOutputPort("generalized_force"))
     world.builder.ExportInput(exoskeleton.GetInputPort("command"), "exoskeleton_command")
     return exoskeleton.GetOutputPort("known_torque")

@@ -34,4 +34,4 @@ def add_support(world: World, parameters: BalanceSupportParameters, pelvis_refer
     support = world.add(
         "support", BalanceSupport(plant, parameters), pelvis_reference=pelvis_reference, state=world.state
     )
-    world.builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
+    world.generalized_forces.append(support.GetOutputPort("generalized_force"))

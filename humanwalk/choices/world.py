@@ -35,6 +35,7 @@ class World:
         sources: systems that command and push the walker.
         known_assistance: torques of exoskeletons that the walker's model includes; None without.
         spatial_forces: ports of forces on bodies, connected to the plant at the end.
+        generalized_forces: ports of generalized forces (nv), connected to the plant at the end.
     """
 
     builder: DiagramBuilder
@@ -51,6 +52,7 @@ class World:
     sources: Sources = FROM_SCENARIO
     known_assistance: OutputPort | None = None
     spatial_forces: list[OutputPort] = field(default_factory=list)
+    generalized_forces: list[OutputPort] = field(default_factory=list)
 
     @property
     def model(self) -> MultibodyPlant:

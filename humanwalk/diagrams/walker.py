@@ -1,15 +1,18 @@
 """The walker of a scenario as a Diagram."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
-from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer, MultibodyPlant
-from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
+from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer
+from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort, System
+from pydrake.systems.primitives import Adder
 
 from humanwalk.choices.controller import Command
 from humanwalk.choices.exoskeleton import add_exoskeleton
 from humanwalk.choices.pushes import add_pushes
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
+from humanwalk.choices.world import World
 from humanwalk.diagrams.playback import make_playback
 from humanwalk.diagrams.world import add_world, built
 from humanwalk.quantity import ParameterError
@@ -55,7 +58,7 @@ def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FRO
     scenario.actuation.add_to(world)
     _connect_command(builder, scenario.controller.add_to(world))
     add_pushes(world, scenario.pushes)
-    _connect_spatial_forces(builder, world.plant, world.spatial_forces)
+    _connect_forces(world)
     return built(
         world,
         "walker",
@@ -81,12 +84,26 @@ def _connect_command(builder: DiagramBuilder, command: Command) -> None:
         builder.ExportInput(actuators.GetInputPort("feedforward"), "feedforward")
 
 
-def _connect_spatial_forces(builder: DiagramBuilder, plant: MultibodyPlant, ports: Sequence[OutputPort]) -> None:
-    """Connect all of the ports' lists of forces to the plant's applied_spatial_force port."""
+def _connect_forces(world: World) -> None:
+    """Connect the forces on bodies and the generalized forces with the plant."""
+    plant = world.plant
+    spatial, generalized = (
+        plant.get_applied_spatial_force_input_port(),
+        plant.get_applied_generalized_force_input_port(),
+    )
+    _connect_sum(world, "spatial_forces", world.spatial_forces, spatial, ExternallyAppliedSpatialForceMultiplexer)
+    adder = partial(Adder, size=plant.num_velocities())
+    _connect_sum(world, "generalized_forces", world.generalized_forces, generalized, adder)
+
+
+def _connect_sum(
+    world: World, name: str, ports: Sequence[OutputPort], goal: InputPort, adder: Callable[[int], System]
+) -> None:
+    """Connect the sum of the ports with a goal, through an adder of that name if there are several."""
     if len(ports) > 1:
-        every = builder.AddNamedSystem("spatial_forces", ExternallyAppliedSpatialForceMultiplexer(len(ports)))
+        total = world.builder.AddNamedSystem(name, adder(len(ports)))
         for i, port in enumerate(ports):
-            builder.Connect(port, every.get_input_port(i))
-        ports = (every.get_output_port(),)
+            world.builder.Connect(port, total.get_input_port(i))
+        ports = (total.get_output_port(),)
     for port in ports:
-        builder.Connect(port, plant.get_applied_spatial_force_input_port())
+        world.builder.Connect(port, goal)

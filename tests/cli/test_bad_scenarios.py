@@ -163,8 +163,9 @@ def test_no_field_of_a_scenario_says_where_to_write() -> None:
     def texts(kind: Any) -> Any:
         return {name for name, field in fields_of(kind) if field.type in (str, "str")}
 
-    files = {"subject.measured", "controller.recorded.angles", "controller.recorded.mapping"}
-    assert texts(Scenario) == {"description"} | files
+    recordings = ("controller.recorded", "controller.balanced.style.recorded")
+    files = {f"{name}.{file}" for name in recordings for file in ("angles", "mapping")}
+    assert texts(Scenario) == {"description", "subject.measured"} | files
 
 
 @pytest.mark.parametrize("name", ["...yaml", "..yaml", "a b;c.yaml", "~.yaml", "-o.yaml"])

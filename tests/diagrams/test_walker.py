@@ -113,6 +113,22 @@ def test_exported_ports_are_those_of_the_docstring(changes: tuple[dict[str, str]
     assert [port for port in outputs if not re.search(rf"\b{port}\b", documented)] == []
 
 
+def test_support_and_exoskeleton_add_up_in_the_plant() -> None:
+    walker = make_walker(thesis({"subject.devices": "[hip_exoskeleton]"}))
+    context = walker.CreateDefaultContext()
+    command = np.linspace(-1.0, 1.0, N)
+    walker.GetInputPort("exoskeleton_command").FixValue(context, command)
+    plant = walker.GetSubsystemByName("plant")
+    assert isinstance(plant, MultibodyPlant)
+    applied = plant.get_applied_generalized_force_input_port().Eval(plant.GetMyContextFromRoot(context))
+    parts = [
+        system.GetOutputPort("generalized_force").Eval(system.GetMyContextFromRoot(context))
+        for system in map(walker.GetSubsystemByName, ("support", "exoskeleton"))
+    ]
+    assert all(np.any(part) for part in parts)
+    np.testing.assert_allclose(applied, sum(parts), atol=1e-12)
+
+
 def test_feedforward_needs_no_connection_and_adds_torque_when_connected() -> None:
     walker = make_walker(thesis(STAND))
     torques = []
