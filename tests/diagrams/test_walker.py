@@ -120,7 +120,9 @@ def test_support_and_exoskeleton_add_up_in_the_plant() -> None:
     walker.GetInputPort("exoskeleton_command").FixValue(context, command)
     plant = walker.GetSubsystemByName("plant")
     assert isinstance(plant, MultibodyPlant)
-    applied = plant.get_applied_generalized_force_input_port().Eval(plant.GetMyContextFromRoot(context))
+    of_plant = plant.GetMyMutableContextFromRoot(context)
+    plant.SetVelocities(of_plant, np.full(plant.num_velocities(), 0.1))
+    applied = plant.get_applied_generalized_force_input_port().Eval(of_plant)
     parts = [
         system.GetOutputPort("generalized_force").Eval(system.GetMyContextFromRoot(context))
         for system in map(walker.GetSubsystemByName, ("support", "exoskeleton"))
