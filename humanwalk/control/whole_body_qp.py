@@ -137,7 +137,7 @@ class WholeBodyQp:
             body: the body at this state.
             reference: plan of the steps.
             posture: desired angles.
-            more: tasks of joint angles in addition to those of the plan.
+            more: tasks in addition to those of the plan.
 
         Returns:
             The program; the accelerations of the prescribed joints; the contacts.

@@ -81,7 +81,7 @@ def tasks(
         reference: what feet, center of mass and trunk should do.
         p: gains and weights.
         passive_ankles: sides without muscles at the ankle.
-        more: tasks of joint angles in addition to those of the plan.
+        more: tasks in addition to those of the plan.
     """
     found = [
         *_center_of_mass(body, reference, p),
@@ -94,7 +94,7 @@ def tasks(
         is_steered = side not in passive_ankles
         state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side), is_steered)
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
-    found.extend(task._replace(weight=p.rotation_radius**2 * task.weight) for task in more)
+    found.extend(more)
     J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
     return np.concatenate(J), np.concatenate(acceleration), np.repeat(weight, [len(a) for a in acceleration])
 
