@@ -20,7 +20,8 @@ class JointStyle:
     """Tasks of the whole-body program: sagittal joint angles over the gait cycle of each leg.
 
     The phase is that of the step planner, so that the angles follow the steps, not the steps the angles. Below the
-    lowest speed of the curves the weight decreases with the speed; in standing there is no task.
+    lowest speed of the curves the weight decreases with the measured forward speed; in standing there is no task. With
+    the commanded speed, the angles of a full stride kept the body from its first step, and it walked backward.
     """
 
     def __init__(self, joints: JointMap, curves: GaitCurves, gains: TaskGains) -> None:
@@ -45,7 +46,9 @@ class JointStyle:
             radius: Length by which angular accelerations are weighed against those of points [m].
         """
         gains = self._gains
-        share = min(max(reference.speed, 0.0) / self._curves.lowest_speed, 1.0)
+        forward = np.array((np.cos(reference.pelvis_yaw), np.sin(reference.pelvis_yaw)))
+        speed = min(float(forward @ body.com.velocity[:2]), reference.speed)
+        share = min(max(speed, 0.0) / self._curves.lowest_speed, 1.0)
         if not reference.is_stepping or share == 0.0:
             return
         phase_rate = 0.5 / reference.step_duration

@@ -7,7 +7,7 @@ import pytest
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.limbs import LEGS
-from humanwalk.control.body_dynamics import BodyDynamics
+from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import TaskGains
 from humanwalk.motion.gait_curves import GaitCurves, styled_joints
@@ -35,15 +35,22 @@ def style(dynamics: BodyDynamics) -> JointStyle:
     return JointStyle(dynamics.joints, GaitCurves.through(np.array([1.0]), ANGLES), GAINS)
 
 
+def walking_at(speed: float, dynamics: BodyDynamics, plant: MultibodyPlant) -> Dynamics:
+    """The upright body as a whole at a forward speed [m/s]."""
+    state = plant.GetPositionsAndVelocities(plant.CreateDefaultContext())
+    state[plant.num_positions() + 3] = speed
+    return dynamics.at(state)
+
+
 def test_each_leg_follows_its_own_phase(dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant) -> None:
-    """Left stance at 20 % of its cycle, the right leg at 70 %: upright at rest, the angles are the errors."""
-    body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
+    """Left stance at 20 % of its cycle, the right leg at 70 %: upright with still joints, the angles are the errors."""
+    body = walking_at(1.0, dynamics, plant)
     rate = 2.0 * np.pi * 0.5 / STEP
     for task, side, phase in zip(style.tasks(body, WALK, 1.0), ("Right", "Left"), (0.7, 0.2), strict=True):
         cosine, sine = np.cos(2.0 * np.pi * phase), np.sin(2.0 * np.pi * phase)
         wanted = (GAINS.stiffness * cosine - GAINS.damping * rate * sine - rate**2 * cosine) * np.array((0.3, 0.2, 0.1))
         assert task.acceleration == pytest.approx(wanted, abs=1e-6)
-        assert task.weight == GAINS.weight
+        assert task.weight == pytest.approx(GAINS.weight)
         places = [int(dynamics.joints.v[dynamics.joints.names.index(name)]) for name in styled_joints(LEGS[side])]  # type: ignore[index]
         assert task.J @ np.arange(body.v.size) == pytest.approx(places)
 
@@ -51,7 +58,7 @@ def test_each_leg_follows_its_own_phase(dynamics: BodyDynamics, style: JointStyl
 def test_in_standing_and_backward_there_is_no_style(
     dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
 ) -> None:
-    body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
+    body = walking_at(1.0, dynamics, plant)
     assert list(style.tasks(body, replace(WALK, phase=Phase.STAND), 1.0)) == []
     assert list(style.tasks(body, replace(WALK, speed=-0.5), 1.0)) == []
 
@@ -59,9 +66,12 @@ def test_in_standing_and_backward_there_is_no_style(
 def test_the_weight_decreases_below_the_speed_of_the_curves_and_with_the_size_of_the_body(
     dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
 ) -> None:
-    body = dynamics.at(plant.GetPositionsAndVelocities(plant.CreateDefaultContext()))
-    assert [task.weight for task in style.tasks(body, replace(WALK, speed=0.25), 1.0)] == [1.0, 1.0]
-    assert [task.weight for task in style.tasks(body, WALK, 0.5)] == [1.0, 1.0]
+    body = walking_at(1.0, dynamics, plant)
+    assert [task.weight for task in style.tasks(body, replace(WALK, speed=0.25), 1.0)] == pytest.approx([1.0, 1.0])
+    assert [task.weight for task in style.tasks(body, WALK, 0.5)] == pytest.approx([1.0, 1.0])
+    slow, backward = (walking_at(speed, dynamics, plant) for speed in (0.5, -0.5))
+    assert [task.weight for task in style.tasks(slow, WALK, 1.0)] == pytest.approx([2.0, 2.0])
+    assert list(style.tasks(backward, WALK, 1.0)) == []
 
 
 def test_phases_of_both_feet_are_half_a_cycle_apart() -> None:
