@@ -114,7 +114,7 @@ def scenarios(
     ] = None,
 ) -> None:
     """List the scenarios that come with humanwalk, or print one of them."""
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from humanwalk.choices import CONTACTS
     from humanwalk.quantity import tag_of
@@ -123,7 +123,7 @@ def scenarios(
     if show is not None:
         print(dump_scenario(load_scenario(show)), end="")
         return
-    table = Table("scenario", "duration [s]", "speed [m/s]", "contact", "description")
+    table = Table(Column("scenario", no_wrap=True), "duration [s]", "speed [m/s]", "contact", "description")
     for name in shipped_scenarios():
         loaded = load_scenario(name)
         table.add_row(

@@ -42,6 +42,9 @@ POINTS = (10, 5)
 RAISING = 0.25
 """Part of the swing in which a foot rises by what it does not see of the ground, and in which it sinks again."""
 
+LONGEST_PART = 0.45
+"""Longest part of the swing in which a foot only rises or sinks; it has to move in the rest."""
+
 
 @dataclass(frozen=True)
 class ClearanceParameters:
@@ -56,14 +59,21 @@ class ClearanceParameters:
     nearness: float = quantity(0.12, "m", 0.0, 0.3)
     """Distance from its footholds up to which a foot is beside a riser, or below an edge."""
 
-    rising: float = quantity(0.25, "", 0.0, 0.45)
+    rising: float = quantity(0.25, "", 0.0, LONGEST_PART)
     """Part of the swing in which a foot beside a riser only rises."""
 
-    sinking: float = quantity(0.4, "", 0.0, 0.45)
+    sinking: float = quantity(0.25, "", 0.0, LONGEST_PART)
     """Part of the swing in which a foot below an edge only sinks."""
+
+    sinking_per_drop: float = quantity(0.81, "1/m", 0.0, 5.0)
+    """Increase of `sinking` per height of a step down: 0.4 on stairs of 18.5 cm."""
 
     hold: float = quantity(0.06, "s", 0.0, 0.5)
     """Time in which a foot that only rises or sinks corrects its place (our choice)."""
+
+    def sinking_part(self, rise: float) -> float:
+        """Part of the swing in which a foot below an edge only sinks, where the ground rises by `rise` [m]."""
+        return min(self.sinking + self.sinking_per_drop * max(-rise, 0.0), LONGEST_PART)
 
 
 class Clearance(NamedTuple):
@@ -151,7 +161,8 @@ def _known_clearance(
     if above[share <= near].max() > least:
         depart, above[share <= near] = law.rising, above[share <= near].max()
     if above[share >= 1.0 - near].max() > least:
-        arrive, above[share >= 1.0 - near] = 1.0 - law.sinking, above[share >= 1.0 - near].max()
+        arrive = 1.0 - law.sinking_part(goal.ground - start.ground)
+        above[share >= 1.0 - near] = above[share >= 1.0 - near].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
     moved = quintic_blend(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))[0]
     # The ground of an ordinary swing rises with the progress, not with the way.

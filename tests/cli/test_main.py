@@ -509,7 +509,9 @@ def test_diagram_of_an_unknown_scenario_is_refused(refusal: Any) -> None:
 
 
 def test_a_tuning_that_cannot_be_used_is_refused(refusal: Any, tmp_path: Path) -> None:
-    assert "no such tuning or file; allowed: cost_of_transport, pushes_60" in refusal("tune", "cheap", "-o", "x")
+    assert "no such tuning or file; allowed: cost_of_transport, likeness, pushes_60" in refusal(
+        "tune", "cheap", "-o", "x"
+    )
     (tmp_path / "bad.yaml").write_text("parameters: {duration: {low: 1.0, high: 30.0}}\n")
     assert "objectives: empty; allowed: " in refusal("tune", "bad.yaml", "-o", "x")
     assert "no tuning, tuning.yaml is missing" in refusal("tune", "show", ".")

@@ -52,11 +52,16 @@ def test_two_treads_of_stairs_are_cleared(direction: str) -> None:
 
 def test_beside_a_riser_the_foot_rises_first_and_below_an_edge_it_sinks_last() -> None:
     ankle = 0.5 + 0.28 * 2 + 0.062
-    for direction, departs, arrives in (("up", LAW.rising, 1.0), ("down", 0.0, 1.0 - LAW.sinking)):
+    for direction, departs, arrives in (("up", LAW.rising, 1.0), ("down", 0.0, 1.0 - LAW.sinking_part(-2.0 * 0.185))):
         course = STAIRS[direction]
         feet = Foothold.on(course, complex(ankle)), Foothold.on(course, complex(ankle + 0.56))
         added = clearance(course, *feet, 0.0, SOLE, LAW)
         assert (added.depart, added.arrive) == (departs, arrives)
+
+
+@given(st.floats(0.0, 0.3), st.floats(0.0, 0.3))
+def test_a_foot_sinks_for_longer_the_deeper_the_step_down_is(rise: float, farther: float) -> None:
+    assert LAW.sinking_part(rise) == LAW.sinking <= LAW.sinking_part(-rise) <= LAW.sinking_part(-rise - farther)
 
 
 @settings(max_examples=20)
