@@ -192,6 +192,18 @@ def actuations() -> str:
     return study_table("actuations", headings, line)
 
 
+def cheap_gains() -> str:
+    def line(gains: str, runs: list[dict[str, Any]]) -> list[str]:
+        (free,) = (row for row in runs if row["push"] == "none")
+        return [gains, *_walked(free), _survival([row for row in runs if row is not free])[0]]
+
+    def section(rows: list[dict[str, Any]]) -> str:
+        lines = [line(gains, list(runs)) for gains, runs in groupby(rows, key=lambda row: row["gains"])]
+        return table(["gains", *WALKED, "pushes survived"], lines)
+
+    return study_section("cheap_gains", section)
+
+
 def likeness() -> str:
     def section(rows: list[dict[str, Any]]) -> str:
         return table(human_likeness.headings(rows), human_likeness.lines(rows, "**{}**".format))
@@ -278,6 +290,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_seeds,
         balance_invariance,
     ),
+    "howto/tuning.md": (cheap_gains,),
     "likeness.md": (likeness,),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
