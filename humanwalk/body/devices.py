@@ -4,7 +4,7 @@ Each kind is a frozen dataclass that returns the skeleton with the device. `know
 of its body includes the device; of an exoskeleton that is mass and torque.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -183,14 +183,12 @@ class AnkleExoskeleton:
 
     def applied(self, skeleton: Skeleton) -> Skeleton:
         for leg in limbs_of(self.side, LEGS):
-            length = -skeleton.joint(leg.ankle).origin[2]
-            skeleton = _with_frame(skeleton, leg.side, leg.shank, length, 0.053, self.mass)
+            skeleton = _with_frame(skeleton, leg.side, leg.shank, leg.ankle, 0.053, self.mass)
         return skeleton
 
     def assistance(self) -> Iterator[Assistance]:
-        for leg in limbs_of(self.side, LEGS):
-            shape = (self.peak_phase, self.rise, self.fall)
-            yield Assistance(leg.side, leg.ankle, -self.peak_torque, *shape, self.known)
+        joints = {leg.side: leg.ankle for leg in limbs_of(self.side, LEGS)}
+        return _assistance(joints, -self.peak_torque, self)
 
 
 @dataclass(frozen=True)
@@ -220,14 +218,12 @@ class HipExoskeleton:
 
     def applied(self, skeleton: Skeleton) -> Skeleton:
         for leg in limbs_of(self.side, LEGS):
-            length = -skeleton.joint(leg.knee).origin[2]
-            skeleton = _with_frame(skeleton, leg.side, leg.thigh, length, 0.085, self.mass)
+            skeleton = _with_frame(skeleton, leg.side, leg.thigh, leg.knee, 0.085, self.mass)
         return skeleton
 
     def assistance(self) -> Iterator[Assistance]:
-        for leg in limbs_of(self.side, LEGS):
-            shape = (self.peak_phase, self.rise, self.fall)
-            yield Assistance(leg.side, leg.hip_flexion, self.peak_torque, *shape, self.known)
+        joints = {leg.side: leg.hip_flexion for leg in limbs_of(self.side, LEGS)}
+        return _assistance(joints, self.peak_torque, self)
 
 
 DEVICES: dict[str, type[Device]] = {
@@ -256,18 +252,27 @@ def _spring(stiffness: float, damping: float, rest_angle: float = 0.0) -> dict[s
     }
 
 
-def _with_frame(skeleton: Skeleton, side: Side, body: str, length: float, girth: float, mass: float) -> Skeleton:
+def _assistance(
+    joints: Mapping[Side, str], peak: float, device: "AnkleExoskeleton | HipExoskeleton"
+) -> Iterator[Assistance]:
+    """Yield the torque of an exoskeleton on one joint of each side."""
+    for side, joint in joints.items():
+        yield Assistance(side, joint, peak, device.peak_phase, device.rise, device.fall, device.known)
+
+
+def _with_frame(skeleton: Skeleton, side: Side, body: str, end_joint: str, girth: float, mass: float) -> Skeleton:
     """Return the skeleton with a strut on the outer side of a body, and cuffs around it.
 
     Args:
         skeleton: Of the wearer.
         side: Side of the leg.
         body: Segment that carries the mass.
-        length: Of the segment [m].
+        end_joint: Joint at the lower end of the segment.
         girth: Radius of the segment of the reference human [m].
         mass: Of the frame [kg].
     """
     along, across, _ = skeleton.size(body)
+    length = -skeleton.joint(end_joint).origin[2]
     radius, outward = girth * across, 1.0 if side == "Left" else -1.0
     name = f"Device_{body}"
     y: float = outward * (radius + 0.012)

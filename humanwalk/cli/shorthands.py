@@ -148,19 +148,22 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, d
     for item in " ".join(rest).split(",") if rest else ():
         found = PART.fullmatch(item.strip())
         name = "_".join(found["name"].split()) or first if found else ""
-        if found is None or name not in known:
+        if not found or name not in known:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(item.strip())} is not FIELD VALUE of {tag}, which has "
                 f"{', '.join(known)}; {end}; correct it{did_you_mean(name, tuple(known))}"
             )
-        unit, written = known[name].metadata.get("unit", ""), (found["unit"] or "").strip()
-        factor = UNITS.get(unit, {unit: 1.0}).get(written) if written else 1.0
-        if factor is None:
+        unit = known[name].metadata.get("unit", "")
+        factors, written = UNITS.get(unit, {unit: 1.0}), (found["unit"] or "").strip() or unit
+        if found["word"]:
+            fields[name] = found["word"]
+        elif written in factors:
+            fields[name] = float(found["number"]) * factors[written]
+        else:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
-                f"{' or '.join(UNITS.get(unit, {unit: 1.0}))}; write one of them"
+                f"{' or '.join(factors)}; write one of them"
             )
-        fields[name] = found["word"] if found["number"] is None else float(found["number"]) * factor
     return {tag: fields}
 
 

@@ -56,7 +56,8 @@ def walk(
     from humanwalk.cli.walk import balanced_overrides, file_name, follow_overrides, walk_and_write
 
     recorded: dict[str, str] = {}
-    if balanced and (follow is None or kinematic):
+    is_dynamic = follow is not None and not kinematic
+    if balanced and not is_dynamic:
         raise ParameterError("--balanced: allowed: with --follow FILE and without --kinematic; name the recording")
     if follow is not None:
         recorded = balanced_overrides(follow, mapping) if balanced else follow_overrides(follow, mapping, kinematic)

@@ -174,8 +174,8 @@ def balanced_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
 
 def _files(recording: Path, mapping: Path | None) -> dict[str, Any]:
     """Fields of a controller or a style that name a recording and its mapping."""
-    files = {"angles": str(recording.absolute())}
-    return files if mapping is None else files | {"mapping": str(mapping.absolute())}
+    files = {"angles": recording, "mapping": mapping}
+    return {name: str(file.absolute()) for name, file in files.items() if file is not None}
 
 
 def write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:

@@ -87,11 +87,9 @@ def _connect_command(builder: DiagramBuilder, command: Command) -> None:
 def _connect_forces(world: World) -> None:
     """Connect the forces on bodies and the generalized forces with the plant."""
     plant = world.plant
-    spatial, generalized = (
-        plant.get_applied_spatial_force_input_port(),
-        plant.get_applied_generalized_force_input_port(),
-    )
+    spatial = plant.get_applied_spatial_force_input_port()
     _connect_sum(world, "spatial_forces", world.spatial_forces, spatial, ExternallyAppliedSpatialForceMultiplexer)
+    generalized = plant.get_applied_generalized_force_input_port()
     adder = partial(Adder, size=plant.num_velocities())
     _connect_sum(world, "generalized_forces", world.generalized_forces, generalized, adder)
 

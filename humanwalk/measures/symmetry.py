@@ -25,9 +25,10 @@ from humanwalk.numerics import Array
 
 def symmetry_index(right: float | None, left: float | None) -> float | None:
     """Symmetry index of two values of equal sign [%], from -200 to 200; None where it is not defined."""
-    if right is None or left is None or right * left < 0.0 or right + left == 0.0:
+    if right is None or left is None:
         return None
-    return 200.0 * (right - left) / (right + left)
+    have_one_sign = right * left >= 0.0 and right + left != 0.0
+    return 200.0 * (right - left) / (right + left) if have_one_sign else None
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,8 @@ class Clearance(NamedTuple):
 
     def raised(self, height: float) -> Clearance:
         """The clearance with an additional height [m] on the whole way, but for its first and last part."""
+        if height == 0.0:
+            return self
         times = np.linspace(0.0, 1.0, INTERVALS + 1)[1:-1]
         near = quintic_blend(np.clip(np.minimum(times, 1.0 - times) / RAISING, 0.0, 1.0))[0]
         return self._replace(lift=tuple((np.array(self.lift) + height * near).tolist()))
@@ -134,26 +136,12 @@ def clearance(
         law: Parameters.
         ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
     """
-    added = _known_clearance(ground, start, goal, yaw, sole, law, ordinary)
-    return added.raised(ground.unseen) if ground.unseen > 0.0 else added
-
-
-def _known_clearance(
-    ground: Ground,
-    start: Foothold,
-    goal: Foothold,
-    yaw: float,
-    sole: SoleExtent,
-    law: ClearanceParameters,
-    ordinary: Array | float,
-) -> Clearance:
-    """What a swing has to add on the ground as it is known; see `clearance`."""
     if start.face.covers_as(goal.face):
-        return Clearance()
+        return Clearance().raised(ground.unseen)
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
     if above.max() <= law.tolerance:
-        return Clearance()
+        return Clearance().raised(ground.unseen)
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
     # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
     least = law.margin + near * abs(goal.ground - start.ground)
@@ -180,7 +168,7 @@ def _known_clearance(
     lift *= quintic_blend(np.clip(TIMES / max(depart, ends), 0.0, 1.0))[0]
     lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, ends), 0.0, 1.0))[0]
     every = (SAMPLES - 1) // INTERVALS
-    return Clearance(tuple(lift[every:-1:every].tolist()), depart, arrive)
+    return Clearance(tuple(lift[every:-1:every].tolist()), depart, arrive).raised(ground.unseen)
 
 
 def height_above_plane(
