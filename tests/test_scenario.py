@@ -198,7 +198,7 @@ def test_huge_whole_number_is_refused(key: str, value: str) -> None:
         ("controller.thesis.balance.support.enabled", "1", "true or false"),
         ("controller.thesis.balance.support.enabled", "'true'", "true or false"),
         ("description", "3", "text"),
-        ("controller.thesis.gait", "[1]", "allowed: ramp, path, first_swing, arms"),
+        ("controller.thesis.gait", "[1]", "allowed: ramp, path, first_swing, footholds, clearance, arms"),
         ("duration", "1:30", "a number"),
         ("controller.thesis.balance.support.enabled", "no", "true or false"),
         ("controller.thesis.gait.path", "0.3", "allowed: step_length"),

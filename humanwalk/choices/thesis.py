@@ -1,11 +1,14 @@
 """The thesis' controller: foot paths by splines, inverse kinematics of the legs, assumed balance."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body_units import scaled
@@ -17,12 +20,13 @@ from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBo
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.inverse_kinematics import InverseKinematicsParameters
 from humanwalk.control.joint_gains import JointGains, joint_gains
-from humanwalk.control.reach import require_reachable
+from humanwalk.control.reach import require_reachable, require_reachable_on
 from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY, quantity
+from humanwalk.sides import SIDES
 from humanwalk.systems.arm_swing_source import ArmSwingSource
 from humanwalk.systems.foot_force_balance import FootForceBalance
 from humanwalk.systems.gait_spline_source import GaitSplineSource
@@ -31,6 +35,9 @@ from humanwalk.systems.posture_interpolator import PostureInterpolator
 from humanwalk.systems.upper_body_balance import UpperBodyBalance
 from humanwalk.terrain import Terrain
 from humanwalk.walking.arm_swing import ArmSwingParameters, arm_joints
+from humanwalk.walking.footholds import FootholdSearch
+from humanwalk.walking.gait_on_ground import GaitOnGround
+from humanwalk.walking.swing_clearance import ClearanceParameters
 
 
 @dataclass(frozen=True)
@@ -45,6 +52,12 @@ class GaitParameters:
 
     first_swing: Literal["Right", "Left"] = "Right"
     """Leg that swings first."""
+
+    footholds: FootholdSearch = FootholdSearch()
+    """Where the feet stand on ground that is not level; `same_face` has no effect, since no foothold changes."""
+
+    clearance: ClearanceParameters = ClearanceParameters()
+    """How the feet clear such ground; `hold` has no effect, since no foot corrects its place."""
 
     arms: ArmSwingParameters = ArmSwingParameters()
     """Swing of the arms."""
@@ -100,8 +113,10 @@ class ThesisController:
         return joint_gains(kinematics_plant(subject), self.gains, subject.scale)
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
-        """Standing: legs straight, arms in the middle of their swing."""
-        return StartPosture({name: joint.middle for name, joint in arm_joints(self.gait.arms).items()})
+        """Standing: legs straight, soles parallel to the ground along x, arms in the middle of their swing."""
+        slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
+        ankles = {LEGS[side].ankle: slope for side in SIDES}
+        return StartPosture({name: joint.middle for name, joint in arm_joints(self.gait.arms).items()} | ankles)
 
     def add_to(self, world: World) -> Command:
         """Add gait, arms, inverse_kinematics, support and, where enabled, the balance levels between them."""
@@ -148,17 +163,25 @@ class ThesisController:
         return gait.GetOutputPort("pelvis_reference"), between.GetOutputPort("desired_state")
 
     def walk(self, subject: Subject) -> WalkingGait:
-        """The walk as a function of time."""
+        """The walk on level ground as a function of time."""
         return WalkingGait(self.gait.path, subject.skeleton.hip_half_width, self.gait.ramp, self.gait.first_swing)
+
+    def walk_on(self, terrain: Terrain, subject: Subject) -> GaitOnGround:
+        """The walk on a terrain as a function of time."""
+        gait = self.gait
+        footholds, clearance = scaled(gait.footholds, subject.scale), scaled(gait.clearance, subject.scale)
+        return GaitOnGround(gait.path, gait.ramp, gait.first_swing, terrain, subject.skeleton, footholds, clearance)
 
     def _add_source(self, world: World) -> tuple[GaitSplineSource, ArmSwingSource, InverseKinematicsSolver]:
         """Add gait, arms and inverse_kinematics, which run one control period ahead; the last is not connected.
 
         Raises:
-            ParameterError: the legs cannot follow the foot path.
+            ParameterError: the legs cannot follow the foot path on the terrain.
         """
         require_reachable(world.subject, self.gait.path, self.inverse_kinematics)
-        walk, skeleton, period = self.walk(world.subject), world.subject.skeleton, self.control_period
+        walk = self.walk_on(world.terrain, world.subject)
+        require_reachable_on(world.terrain, world.subject, walk, self.inverse_kinematics)
+        skeleton, period = world.subject.skeleton, self.control_period
         start = self.start_posture(world.subject, world.terrain).angles
         names = JointMap.of(world.model).names
         return (

@@ -1,7 +1,10 @@
-"""Whether the legs of a body can follow a foot path."""
+"""Whether the legs of a body can follow a foot path, on level ground and on a terrain."""
+
+import math
+from typing import NamedTuple
 
 import numpy as np
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.limbs import LEGS, PELVIS
@@ -14,17 +17,72 @@ from humanwalk.control.inverse_kinematics import (
     solve_inverse_kinematics,
 )
 from humanwalk.gait.foot_cycle import FootCycle, FootPathParameters, minimum_offset
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
+from humanwalk.sides import SIDES
+from humanwalk.terrain import Terrain
+from humanwalk.walking.gait_on_ground import GaitOnGround
 
 PHASES = 48
 """Phases of the cycle at which the legs' reach is tried."""
+
+POSES = 12
+"""Poses of both soles that are tried in a step on a terrain."""
+
+STEPS_AHEAD = 4
+"""Number of steps after the beginning of the last face of a terrain; then all are alike."""
+
+DIGITS = 5
+"""Decimals [m, rad] in which poses that are tried differ."""
 
 TOLERANCE = 0.005
 TOLERANCE_RAD = 0.02
 """How far the sole may stay off its path [m], and how far it may be rotated from it [rad]."""
 
+STANCE_TOLERANCE_RAD, SWING_TOLERANCE_RAD = 0.06, 0.12
+"""How far a sole may be rotated from its path on a terrain [rad]: the ankle of a leg far behind is at its end. The toes
+are then 1.3 cm lower in stance, as when a heel begins to rise, and 2.5 cm in swing, less than its margin."""
+
 TOE_TOLERANCE = 0.003
 """How far below the ground the path may put the toes in swing [m]: what the toe joint yields to."""
+
+
+class NearestPose(NamedTuple):
+    """The pose of a sole nearest to a desired one.
+
+    Attributes:
+        theta: Joint angles [rad], shape (n,).
+        off, turned: Distance [m] and rotation [rad] from the desired pose.
+        at_end: Joints at the end of their range.
+    """
+
+    theta: Array
+    off: float
+    turned: float
+    at_end: tuple[str, ...]
+
+    def is_near(self, turned: float) -> bool:
+        """Whether the pose is within the tolerance and a rotation [rad] of the desired one."""
+        return self.turned <= turned and self.off <= TOLERANCE
+
+    def difference(self, turned: float) -> str:
+        """The difference, the joints and what is allowed, for a message."""
+        return (
+            f"the sole stays {100 * self.off:.1f} cm and {math.degrees(self.turned):.0f} deg off its path, with "
+            f"{', '.join(self.at_end) or 'the knee'} at the end of its range; allowed: {100 * TOLERANCE:.1f} cm and "
+            f"{math.degrees(turned):.0f} deg"
+        )
+
+
+def nearest_pose(
+    leg: LegKinematics, X_PS: RigidTransform, theta_guess: Array, parameters: InverseKinematicsParameters
+) -> NearestPose:
+    """Return the pose of the sole that inverse kinematics find; see `solve_inverse_kinematics`."""
+    theta = solve_inverse_kinematics(leg, X_PS, theta_guess, parameters).theta
+    error = pose_error(leg.X_PS(theta), X_PS)
+    ends = zip(leg.joint_names, theta, leg.lower, leg.upper, strict=True)
+    at_end = tuple(name for name, angle, low, high in ends if not low < angle < high)
+    return NearestPose(theta, float(np.linalg.norm(error[3:])), float(np.linalg.norm(error[:3])), at_end)
 
 
 def require_reachable(subject: Subject, path: FootPathParameters, parameters: InverseKinematicsParameters) -> None:
@@ -56,20 +114,44 @@ def require_reachable(subject: Subject, path: FootPathParameters, parameters: In
             RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0]),
             np.array([x - 0.5 * path.step_length, -skeleton.hip_half_width, z - below_hips]),
         )
-        solution = solve_inverse_kinematics(leg, X_PS, theta, parameters)
-        theta = solution.theta
-        error = pose_error(leg.X_PS(theta), X_PS)
-        turned, off = np.linalg.norm(error[:3]), np.linalg.norm(error[3:])
-        if turned > TOLERANCE_RAD or off > TOLERANCE:
-            at_end = [
-                name
-                for name, angle, low, high in zip(leg.joint_names, theta, leg.lower, leg.upper, strict=True)
-                if not low < angle < high
-            ]
+        nearest = nearest_pose(leg, X_PS, theta, parameters)
+        theta = nearest.theta
+        if not nearest.is_near(TOLERANCE_RAD):
             raise ParameterError(
-                f"controller.thesis.gait.path: at phase {phase:.2f} of the cycle the sole stays {100 * off:.1f} cm and "
-                f"{np.rad2deg(turned):.0f} deg off its path, with {', '.join(at_end) or 'the knee'} at the end of "
-                f"its range; allowed: {100 * TOLERANCE:.1f} cm and {np.rad2deg(TOLERANCE_RAD):.0f} deg; "
+                f"controller.thesis.gait.path: at phase {phase:.2f} of the cycle {nearest.difference(TOLERANCE_RAD)}; "
                 f"change step_height ({path.step_height:g}), toe_drop ({path.toe_drop:g}), "
                 f"step_length ({path.step_length:g}) or offset ({path.offset:g})"
             )
+
+
+def require_reachable_on(
+    terrain: Terrain, subject: Subject, gait: GaitOnGround, parameters: InverseKinematicsParameters
+) -> None:
+    """Raise ParameterError if a gait has no footholds on its terrain, or a subject's legs cannot follow it there."""
+    path, hip_height = gait.parameters, subject.skeleton.hip_height - gait.parameters.offset
+    plant = kinematics_plant(subject)
+    legs = [LegKinematics(plant, PELVIS, LEGS[side].sole, LEGS[side].chain) for side in SIDES]
+    theta = [0.5 * (leg.lower + leg.upper) for leg in legs]
+    last = max((face.lower[0] for face in terrain.faces), default=0.0) / path.walked_step + STEPS_AHEAD
+    tried = set()
+    for step in np.arange(0.0, last, 1.0 / POSES).tolist():
+        time = gait.ramp.time_at(step * path.walked_step)
+        if math.isinf(time):
+            return
+        for i, foot in enumerate(gait.target(time)[2:]):
+            pose = (i, *np.round((*foot.position, foot.pitch, foot.roll), DIGITS).tolist())
+            if pose in tried:
+                continue
+            tried.add(pose)
+            x, y, z = foot.position
+            X_PS = RigidTransform(RollPitchYaw(foot.roll, foot.pitch, 0.0), np.array((x, y, z - hip_height)))
+            nearest = nearest_pose(legs[i], X_PS, theta[i], parameters)
+            theta[i] = nearest.theta
+            turned = STANCE_TOLERANCE_RAD if foot.in_stance else SWING_TOLERANCE_RAD
+            if not nearest.is_near(turned):
+                place = f"in step {int(step) + 1}, at x = {step * path.walked_step:.2f} m"
+                raise ParameterError(
+                    f"controller.thesis.gait.path: on this terrain, {place}, {nearest.difference(turned)}; "
+                    f"change step_length ({path.step_length:g}), step_height ({path.step_height:g}), toe_drop "
+                    f"({path.toe_drop:g}) or offset ({path.offset:g}), or choose a terrain that is less steep"
+                )

@@ -103,6 +103,8 @@ class SwingCurve:
 
     def __init__(self, x: Array, z: Array, end_speed: float, law: SwingLaw) -> None:
         tau = np.linspace(0.0, 1.0, TABLE_SIZE + 1)
+        self._begin, self._end_speed = float(x[0]), end_speed
+        self._step = float(x[-1]) - self._begin + end_speed
         self._curve = CubicHermiteSpline(tau, *SWING_LAWS[law](tau, x, z, end_speed))
 
     def position(self, tau: float) -> tuple[float, float]:
@@ -114,6 +116,11 @@ class SwingCurve:
         """d(x, z)/dtau [m] at tau in [0, 1]."""
         x, z = self._curve(tau, nu=1).tolist()
         return x, z
+
+    def way(self, tau: Array) -> tuple[Array, Array]:
+        """Share of the step over ground that the foot has made at tau, and its derivative; at rest at both ends."""
+        x, rate = self._curve(tau)[..., 0], self._curve(tau, nu=1)[..., 0]
+        return (x - self._begin + self._end_speed * tau) / self._step, (rate + self._end_speed) / self._step
 
 
 def thesis_swing(tau: Array, x: Array, z: Array, end_speed: float) -> tuple[Array, Array]:
@@ -168,14 +175,14 @@ class FootCycle:
     """Position of one sole in the path frame over its phase: stance, then swing.
 
     Stance, phase < duty_factor: x = L (1 - phase / duty_factor), z = 0 exactly, so the foot does not move over ground.
-    Swing: from (0, 0) over the apex H to (L, 0). C1 in phase.
+    Swing: from (0, 0) over the apex H to (L, 0), the curve `swing`. C1 in phase.
     """
 
     def __init__(self, parameters: FootPathParameters) -> None:
         self.parameters = p = parameters
         self._swing_fraction = 1.0 - p.duty_factor
         end_speed = p.walked_stride * self._swing_fraction
-        self._swing = SwingCurve(_SWING_X * p.step_length, _SWING_Z * p.step_height, end_speed, p.swing)
+        self.swing = SwingCurve(_SWING_X * p.step_length, _SWING_Z * p.step_height, end_speed, p.swing)
 
     def in_stance(self, phase: float) -> bool:
         """Whether the foot of this phase is on the ground."""
@@ -185,13 +192,13 @@ class FootCycle:
         """(x, z) [m] in the path frame."""
         if self.in_stance(phase):
             return self.parameters.step_length * (1.0 - phase % 1.0 / self.parameters.duty_factor), 0.0
-        return self._swing.position(self._tau(phase))
+        return self.swing.position(self._tau(phase))
 
     def derivative(self, phase: float) -> tuple[float, float]:
         """d(x, z)/dphase [m]."""
         if self.in_stance(phase):
             return -self.parameters.step_length / self.parameters.duty_factor, 0.0
-        x_rate, z_rate = self._swing.derivative(self._tau(phase))
+        x_rate, z_rate = self.swing.derivative(self._tau(phase))
         return x_rate / self._swing_fraction, z_rate / self._swing_fraction
 
     def pitch(self, phase: float) -> tuple[float, float]:
@@ -201,6 +208,10 @@ class FootCycle:
         hump, rate = swing_hump(self._tau(phase))
         drop = self.parameters.toe_drop
         return drop * hump, drop * rate / self._swing_fraction
+
+    def progress(self, phase: float) -> tuple[float, float]:
+        """Progress of the swing from 0 to 1, and its derivative by phase; 0 in stance."""
+        return (0.0, 0.0) if self.in_stance(phase) else (self._tau(phase), 1.0 / self._swing_fraction)
 
     def _tau(self, phase: float) -> float:
         return (phase % 1.0 - self.parameters.duty_factor) / self._swing_fraction

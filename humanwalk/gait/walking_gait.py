@@ -7,7 +7,14 @@ exactly half a cycle behind it (errata E26, E32).
 
 from typing import NamedTuple
 
-from humanwalk.gait.foot_cycle import FootCycle, FootPathParameters, start_distance, start_swing, swing_hump
+from humanwalk.gait.foot_cycle import (
+    FootCycle,
+    FootPathParameters,
+    SwingCurve,
+    start_distance,
+    start_swing,
+    swing_hump,
+)
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import ParameterError, require_in_range
@@ -22,10 +29,13 @@ class FootTarget(NamedTuple):
     velocity: its time derivative (3,) [m/s].
     height: of the sole above the ground [m], >= 0.
     height_rate: its time derivative [m/s].
-    pitch: of the sole about y, toes down positive [rad].
-    pitch_rate: its time derivative [rad/s].
+    pitch, roll: of the sole, toes down and left side up positive [rad]: its axes are R_y(pitch) R_x(roll).
+    pitch_rate, roll_rate: their time derivatives [rad/s].
     phase: 0 at touchdown, below duty_factor in stance, modulo 1; nominal during the start swing.
     in_stance: whether the foot is on the ground.
+    step: the foothold that the foot stands on or leaves, and the next; foothold k is k walked steps from the start.
+    progress: of the swing between them, 0 in stance.
+    progress_rate: its time derivative [1/s].
     """
 
     position: tuple[float, float, float]
@@ -36,6 +46,11 @@ class FootTarget(NamedTuple):
     pitch_rate: float
     phase: float
     in_stance: bool
+    step: tuple[int, int]
+    progress: float
+    progress_rate: float
+    roll: float = 0.0
+    roll_rate: float = 0.0
 
 
 class PelvisTarget(NamedTuple):
@@ -120,6 +135,10 @@ class WalkingGait:
         """Phase of a foot at t [s]; see `FootTarget`."""
         return self._phase(side, self.ramp.distance(t))
 
+    def swing_curve(self, step: tuple[int, int]) -> SwingCurve:
+        """Path of the swing between two footholds, see `FootTarget`."""
+        return self._start if step == (0, 1) else self._cycle.swing
+
     def _foot(self, side: Side, pelvis: PelvisTarget) -> FootTarget:
         d = pelvis.distance
         phase = self._phase(side, d)
@@ -130,11 +149,16 @@ class WalkingGait:
             hump, hump_slope = swing_hump(tau)
             pitch = self.parameters.toe_drop * hump
             pitch_slope = self.parameters.toe_drop * hump_slope / self.start_distance
+            step, progress, progress_slope = (0, 1), tau, 1.0 / self.start_distance
         else:
             (x, height), slopes = self._cycle.position(phase), self._cycle.derivative(phase)
             x_slope, height_slope = (slope / self.parameters.walked_stride for slope in slopes)
             pitch, pitch_slope = self._cycle.pitch(phase)
             pitch_slope /= self.parameters.walked_stride
+            last = self._last_foothold(side, d)
+            step = (max(last, 0), last + 2)
+            progress, progress_slope = self._cycle.progress(phase)
+            progress_slope /= self.parameters.walked_stride
         height_rate = height_slope * pelvis.speed
         z = height - self.parameters.offset + pelvis.drop
         return FootTarget(
@@ -146,6 +170,9 @@ class WalkingGait:
             pitch_rate=pitch_slope * pelvis.speed,
             phase=phase,
             in_stance=self._in_stance(side, d),
+            step=step,
+            progress=progress,
+            progress_rate=progress_slope * pelvis.speed,
         )
 
     def _in_stance(self, side: Side, d: float) -> bool:
@@ -153,10 +180,20 @@ class WalkingGait:
             return d <= 0.0
         return self._cycle.in_stance(self._phase(side, d))
 
-    def _phase(self, side: Side, d: float) -> float:
+    def _cycles(self, side: Side, d: float) -> float:
         # The foot that stands first starts halfway through its stance.
         cycles = (0.5 * self.parameters.step_length + d) / self.parameters.walked_stride
-        return (cycles - 0.5 if side == self.first_swing else cycles) % 1.0
+        return cycles - 0.5 if side == self.first_swing else cycles
+
+    def _phase(self, side: Side, d: float) -> float:
+        return self._cycles(side, d) % 1.0
+
+    def _last_foothold(self, side: Side, d: float) -> int:
+        """Number of the last foothold of the cycle; -1 before the first touchdown."""
+        cycles = self._cycles(side, d)
+        # Just below an integer, the phase may round to 1.
+        begun = round(cycles - self._phase(side, d) % 1.0)
+        return 2 * begun + (side == self.first_swing)
 
     def _y(self, side: Side) -> float:
         return self.hip_half_width if side == "Left" else -self.hip_half_width

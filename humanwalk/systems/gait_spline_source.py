@@ -19,8 +19,8 @@ class GaitSplineSource(LeafSystem):
 
     Outputs:
         sole_targets: (26) desired motion of the right, then of the left sole frame in the pelvis frame P, at `preview`
-            from now. Soles are level in stance (thesis 4.2.3: foot orientation constant); in swing the toes drop by
-            the path's toe_drop.
+            from now. Soles lie on the ground in stance (thesis 4.2.3: foot orientation constant); in swing the toes
+            drop by the path's toe_drop.
         pelvis_reference: (13) desired motion of the pelvis in W, upright and walking along +x.
         phase: (2) phase of the right and of the left foot in [0, 1), 0 at touchdown.
         contact_schedule: (2) right, left: 1 in stance, 0 in swing.
@@ -47,10 +47,12 @@ class GaitSplineSource(LeafSystem):
 
     def _sole_target(self, foot: FootTarget) -> Array:
         x, y, z = foot.position
-        quaternion = (cos(foot.pitch / 2), 0.0, sin(foot.pitch / 2), 0.0)
+        (c_pitch, s_pitch), (c_roll, s_roll) = ((cos(angle / 2), sin(angle / 2)) for angle in (foot.pitch, foot.roll))
+        quaternion = (c_pitch * c_roll, c_pitch * s_roll, s_pitch * c_roll, -s_pitch * s_roll)
+        rates = (foot.roll_rate * cos(foot.pitch), foot.pitch_rate, -foot.roll_rate * sin(foot.pitch))
         # The gait's z is from the ground while walking, where the hips are lower than in standing by the offset.
         position = (x, y, z - (self._hip_height - self._gait.parameters.offset))
-        return np.array((*quaternion, *position, 0.0, foot.pitch_rate, 0.0, *foot.velocity))
+        return np.array((*quaternion, *position, *rates, *foot.velocity))
 
     def _calc_pelvis_reference(self, context: Context, output: BasicVector) -> None:
         pelvis = self._gait.pelvis(context.get_time())

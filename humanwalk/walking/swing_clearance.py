@@ -8,6 +8,7 @@ and one that lands below an edge moves forward before it sinks.
 from __future__ import annotations
 
 import cmath
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -116,6 +117,12 @@ class Clearance(NamedTuple):
         return goal._replace(lift=lift)
 
 
+def quintic_way(progress: Array) -> Array:
+    """Share of the way that an ordinary swing of the balanced walker has made at a progress."""
+    share: Array = quintic_blend(progress)[0]
+    return share
+
+
 def clearance(
     ground: Ground,
     start: Foothold,
@@ -124,6 +131,7 @@ def clearance(
     sole: SoleExtent,
     law: ClearanceParameters,
     ordinary: Array | float = 0.0,
+    way: Callable[[Array], Array] = quintic_way,
 ) -> Clearance:
     """Return what a swing from one foothold to another has to add: to clear what is known of the ground, and the rest.
 
@@ -135,6 +143,7 @@ def clearance(
         sole: Extent of the sole.
         law: Parameters.
         ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
+        way: Share of the way that an ordinary swing has made at a progress.
     """
     if start.face.covers_as(goal.face):
         return Clearance().raised(ground.unseen)
@@ -152,9 +161,9 @@ def clearance(
         arrive = 1.0 - law.sinking_part(goal.ground - start.ground)
         above[share >= 1.0 - near] = above[share >= 1.0 - near].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
-    moved = quintic_blend(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))[0]
+    moved = way(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))
     # The ground of an ordinary swing rises with the progress, not with the way.
-    ahead = (quintic_blend(TIMES)[0] - moved) * (goal.ground - start.ground)
+    ahead = (way(TIMES) - moved) * (goal.ground - start.ground)
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
     stands_out = np.interp(moved, share, above)
     needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), 0.0)

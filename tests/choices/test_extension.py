@@ -119,7 +119,7 @@ def test_signals_of_a_new_system_are_recorded(scenario: Any) -> None:
 
 def test_a_course_takes_a_new_piece(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PIECES, "kerf", Kerf)
-    scenario = parse_scenario("terrain: {course: {pieces: [{kerf: {slit: 0.2}}, slope, kerf]}}\nduration: 0.01")
+    scenario = parse_scenario("terrain: {course: {pieces: [{kerf: {slit: 0.2}}, slope, kerf]}}\ncontroller: balanced")
     assert isinstance(scenario.terrain, Course)
     assert scenario.terrain.pieces[0] == Kerf(slit=0.2)
     assert parse_scenario(dump_scenario(scenario)) == scenario

@@ -122,7 +122,7 @@ def test_the_toes_drop_once_in_swing_and_the_sole_is_level_in_stance(path: FootP
 def test_feet_meet_and_leave_the_ground_without_slip(path: FootPathParameters) -> None:
     """E27: at both ends of swing the foot has the velocity of stance, which is zero over ground."""
     for curve, distance in (
-        (FootCycle(path)._swing, (1.0 - path.duty_factor) * path.walked_stride),
+        (FootCycle(path).swing, (1.0 - path.duty_factor) * path.walked_stride),
         (start_swing(path), start_distance(path)),
     ):
         for tau in (0.0, 1.0):

@@ -13,9 +13,14 @@ from pydrake.multibody.math import SpatialVelocity
 
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.inverse_kinematics import pose_error
+from humanwalk.gait.foot_cycle import FootPathParameters
+from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.numerics import Array
 from humanwalk.systems.gait_spline_source import GaitSplineSource
+from humanwalk.terrain import Course
+from humanwalk.terrain.slope import Slope
+from humanwalk.walking.gait_on_ground import GaitOnGround
 
 SIDES = ("Right", "Left")
 STEP = 1e-6
@@ -115,6 +120,37 @@ def test_feet_are_half_a_cycle_apart_and_one_is_always_down(at: Callable[..., An
     assert (right - left) % 1.0 == pytest.approx(0.5, abs=1e-9)
     assert here["contact_schedule"].sum() >= 1
     assert set(here["contact_schedule"]) <= {0.0, 1.0}
+
+
+TILTED = Slope(slope=0.08, cross_slope=-0.07, length=3.0)
+
+
+@pytest.mark.parametrize("t", np.linspace(0.5, 2.5, 21))
+def test_on_a_tilted_face_soles_lie_on_it_and_velocities_are_the_rates_of_the_poses(
+    skeleton: Skeleton, t: float
+) -> None:
+    terrain = Course(pieces=(TILTED,))
+    walk = GaitOnGround(FootPathParameters(), SpeedRamp(1.4, 0.365), "Right", terrain, skeleton)
+    source = GaitSplineSource(walk, skeleton)
+    context = source.CreateDefaultContext()
+
+    def outputs(time: float) -> tuple[list[RigidTransform], list[Array], Array]:
+        context.SetTime(time)
+        rows = np.split(source.GetOutputPort("sole_targets").Eval(context), 2)
+        pelvis = source.GetOutputPort("pelvis_reference").Eval(context)
+        poses = [RigidTransform(Quaternion(row[:4]), row[4:7]) for row in (*rows, pelvis)]
+        return poses, [row[7:] for row in (*rows, pelvis)], source.GetOutputPort("phase").Eval(context)
+
+    (poses, velocities, phases), (after, _, _), (before, _, _) = (outputs(time) for time in (t, t + STEP, t - STEP))
+    for velocity, late, early in zip(velocities, after, before, strict=True):
+        np.testing.assert_allclose(velocity, pose_error(late, early) / (2 * STEP), atol=500 * STEP)
+    for X_PS, phase in zip(poses[:2], phases, strict=True):
+        X_WS = poses[2] @ X_PS
+        xy = X_WS.translation()[:2]
+        # Later in stance the heel may rise.
+        if phase <= 0.5 * walk.parameters.duty_factor:
+            assert X_WS.translation()[2] == pytest.approx(float(terrain.height(xy)), abs=1e-9)
+            np.testing.assert_allclose(X_WS.rotation().matrix(), terrain.axes(xy).T, atol=1e-9)
 
 
 def test_it_starts_standing_on_both_feet(at: Callable[..., Any], skeleton: Skeleton) -> None:
