@@ -72,6 +72,7 @@ SHOTS = {
         ),
     ),
     "thesis_12cm": Shot("thesis_12cm"),
+    "thesis_stairs": Shot("thesis_stairs", instants=(2.9, 3.2, 3.5, 3.8, 7.6, 7.9, 8.2, 8.5)),
     "comfortable": Shot("comfortable", video=SIDE),
     "bones": Shot("thesis", {"subject.look": "bones", "duration": "8"}),
 }

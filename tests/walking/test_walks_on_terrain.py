@@ -1,4 +1,4 @@
-"""The balanced walker on ground that it knows, and on a slope that it does not."""
+"""The balanced walker on ground that it knows, and on a slope that it does not; the thesis' walker on stairs."""
 
 import numpy as np
 import pytest
@@ -50,3 +50,19 @@ def test_stairs_raise_and_lower_the_body_by_their_height(direction: str, sign: f
     assert z[-1] - z[0] == pytest.approx(sign * 4 * 0.185, abs=0.06)
     soles = [outcome.signals[f"{side}_sole.z_m"].to_numpy()[-1] for side in ("right", "left")]
     assert min(abs(sole - sign * 4 * 0.185) for sole in soles) < 0.05
+
+
+def test_the_held_walk_of_the_thesis_climbs_stairs_with_its_feet_on_the_treads() -> None:
+    course = "{course: {run_up: 0.528, pieces: [{stairs: {rise: 0.15, tread: 0.3, number: 2}}, flat]}}"
+    scenario = load_scenario("thesis_stairs", {"duration": "3.2", "terrain": course})
+    outcome = simulate(scenario)
+    assert outcome.end == "completed"
+    signals = {name: outcome.signals[name].to_numpy() for name in outcome.signals.column_names}
+    for side in ("right", "left"):
+        phase, force = signals[f"{side}_foot.phase"], signals[f"{side}_foot.force_z_N"]
+        stands = (phase > 0.1) & (phase < 0.3) & (force > 50.0)
+        x, y, z = (signals[f"{side}_sole.{axis}_m"][stands] for axis in "xyz")
+        np.testing.assert_allclose(z, scenario.terrain.height(np.column_stack((x, y))), atol=0.005)
+    # The pelvis is 3 cm lower in walking than in standing, and the energy is m g times the rise.
+    rise = signals["com.z_m"][-1] - signals["com.z_m"][0]
+    assert rise == pytest.approx(2 * 0.15 - 0.03, abs=0.03)
