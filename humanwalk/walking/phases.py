@@ -104,6 +104,7 @@ class PhaseTransitions:
                 foothold=Foothold(foot.position, state.old_foot.ground, goal.face),
                 start_yaw=foot.yaw,
                 start=foot.position,
+                lift_off=state.elapsed,
                 ordinary=np.array([profile.lowest(s, flat_height, sole) for s in TIMES.tolist()]),
                 start_toes=foot_behind(state, command, self._parameters).toes[0],
             ),

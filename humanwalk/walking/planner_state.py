@@ -30,6 +30,7 @@ class Swing(NamedTuple):
         foothold: Where the foot will stand.
         start_yaw, start_toes: Yaw of the foot and extension of the toes at lift-off [rad].
         start: Ankle over the level plane at lift-off [m].
+        lift_off: Time on the clock of the step at lift-off [s].
         rise: Height of the ground at the foothold above that at lift-off [m].
         clearance: What the swing adds to clear the ground.
         ordinary: Height of the lowest point of the sole without that, at `TIMES` [m].
@@ -41,6 +42,7 @@ class Swing(NamedTuple):
     start_yaw: float
     start_toes: float
     start: complex = 0.0
+    lift_off: float = 0.0
     rise: float = 0.0
     clearance: Clearance = Clearance()
     ordinary: Array | float = 0.0

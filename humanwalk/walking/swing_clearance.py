@@ -112,9 +112,13 @@ class Clearance(NamedTuple):
         return max((self.arrive - progress) / max(1.0 - progress, 1e-9) * remaining, hold)
 
     def filtered(self, goal: Clearance, smoothing: float) -> Clearance:
-        """The clearance moved toward another one by a share of the difference."""
+        """The clearance moved toward another one by a share of the difference.
+
+        A foot that is to rise or sink first does so in the whole swing: one that were at the limit of `nearness` would
+        otherwise start and stop from one control period to the next.
+        """
         lift = tuple(a + smoothing * (b - a) for a, b in zip(self.lift, goal.lift, strict=True))
-        return goal._replace(lift=lift)
+        return Clearance(lift, max(self.depart, goal.depart), min(self.arrive, goal.arrive))
 
 
 def quintic_way(progress: Array) -> Array:

@@ -47,7 +47,7 @@ def advanced_swing(
         footholds: Finds the foothold.
         period: Control period [s].
     """
-    is_first = state.elapsed - state.timing.double_support < 0.5 * period
+    is_first = state.elapsed == swing.lift_off
     if state.timing.step - state.elapsed > parameters.placement.freeze_time:
         swing = _with_foothold(state, swing, goal, parameters, footholds, None if is_first else period)
     return swing._replace(motion=_moved(state, swing, goal.remaining, command, parameters, period))
