@@ -114,8 +114,8 @@ class Clearance(NamedTuple):
     def filtered(self, goal: Clearance, smoothing: float) -> Clearance:
         """The clearance moved toward another one by a share of the difference.
 
-        A foot that is to rise or sink first does so in the whole swing: one that were at the limit of `nearness` would
-        otherwise start and stop from one control period to the next.
+        A foot that has begun to rise before it moves, or to arrive before it sinks, goes on to do so: near the limit of
+        `nearness` it would otherwise start and stop from one control period to the next.
         """
         lift = tuple(a + smoothing * (b - a) for a, b in zip(self.lift, goal.lift, strict=True))
         return Clearance(lift, max(self.depart, goal.depart), min(self.arrive, goal.arrive))

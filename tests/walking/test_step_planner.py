@@ -137,6 +137,23 @@ def test_a_perfect_pendulum_walks_as_commanded(speed: complex) -> None:
     assert (middle[window] - middle[0]).imag / (window * PERIOD) == pytest.approx(speed.imag, abs=0.03)
 
 
+@given(st.floats(0.0, 0.03))
+@settings(max_examples=15, deadline=None)
+def test_the_first_foothold_of_a_swing_is_not_filtered_however_fast_the_clock_ran(overshoot: float) -> None:
+    state = next(s for _, s, _, _ in pendulum_walk(planner(), walk_at(0.8), 4.0) if s.phase is Phase.DOUBLE_SUPPORT)
+    behind, ahead = (foot(state.foot(side).position) for side in (other_side(state.stance), state.stance))
+    feet = {state.stance: ahead, other_side(state.stance): behind}
+    body = BodyState(state.midpoint + 0.05, 0.8 + 0j, 0.93, feet["Right"], feet["Left"])
+    lifting = state._replace(elapsed=state.timing.double_support + overshoot)
+    footholds = []
+    for time in (0.0, 0.5):
+        placement = replace(PARAMETERS.placement, filter_time=time, rise_filter_time=time)
+        after, _ = planner(parameters=replace(PARAMETERS, placement=placement)).update(lifting, body, WALK)
+        assert after.swing is not None
+        footholds.append(after.swing.foothold.position)
+    assert footholds[0] == footholds[1]
+
+
 def test_a_turn_turns_the_feet_and_the_walk() -> None:
     *_, (_, state, _, body) = pendulum_walk(planner(), walk_at(0.5, turn=0.3), 8.0)
     assert state.heading > 1.0

@@ -59,6 +59,15 @@ def test_beside_a_riser_the_foot_rises_first_and_below_an_edge_it_sinks_last() -
         assert (added.depart, added.arrive) == (departs, arrives)
 
 
+def test_a_foot_that_rises_first_or_sinks_last_does_so_in_the_whole_swing() -> None:
+    """At the limit of nearness both change with every small motion of the foothold."""
+    begun = Clearance((0.0,) * len(LIFT), depart=LAW.rising, arrive=1.0 - LAW.sinking)
+    later = begun.filtered(Clearance(LIFT), 0.25)
+    assert (later.depart, later.arrive) == (begun.depart, begun.arrive)
+    assert later.lift == pytest.approx([0.25 * height for height in LIFT])
+    assert Clearance().filtered(begun, 0.25)[1:] == begun[1:]
+
+
 @given(st.floats(0.0, 0.3), st.floats(0.0, 0.3))
 def test_a_foot_sinks_for_longer_the_deeper_the_step_down_is(rise: float, farther: float) -> None:
     assert LAW.sinking_part(rise) == LAW.sinking <= LAW.sinking_part(-rise) <= LAW.sinking_part(-rise - farther)
