@@ -56,10 +56,6 @@ class WholeBodyParameters:
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
     """Zero velocity of a foot in stance."""
 
-    stance_roll: float = quantity(0.001, "", 0.0, 1.0)
-    """Share of that weight about the long axis of the foot: a foot that stands on an edge, or whose ankle is at the end
-    of its range, tilts."""
-
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
     """Speed at which a stance foot that is still in the air moves toward the ground."""
 

@@ -148,9 +148,7 @@ def _turn(foot: Foot, rotation: Task) -> Task:
 def _no_motion(frame: FrameMotion, velocity: Array, p: WholeBodyParameters) -> Iterator[Task]:
     """A frame in stance should not turn and have a translational velocity in W."""
     desired = p.stance.damping * (np.concatenate((REST, velocity)) - frame.V_WB) - frame.bias
-    axes, weight = frame.R_WB.T, p.rotation_radius**2 * p.stance.weight
-    yield Task(axes[:1] @ frame.J[:3], axes[:1] @ desired[:3], p.stance_roll * weight)
-    yield Task(axes[1:] @ frame.J[:3], axes[1:] @ desired[:3], weight)
+    yield Task(frame.J[:3], desired[:3], p.rotation_radius**2 * p.stance.weight)
     yield Task(frame.J[3:], desired[3:], p.stance.weight)
 
 
