@@ -44,7 +44,7 @@ BODIES = {
     "tall and heavy": BodyScale(length=(17 / 16) ** 2, mass=1.3 * (17 / 16) ** 6),
 }
 UNLOADED = ("loaded", "cop_", "free_moment", "friction_use")
-"""Columns that are zero up to a force of 1 N on every body."""
+"""Parts of the names of columns that are zero up to a force of 1 N on every body."""
 
 
 def similar(scenario: Scenario, walker: str, scale: BodyScale) -> Scenario:
@@ -71,7 +71,8 @@ def walk(walker: str, scale: BodyScale = REFERENCE_BODY) -> dict[str, Any]:
     """Signals by column, in the units of the reference body."""
     signals = simulate(similar(parse_scenario(WALKS[walker]), walker, scale)).signals
     factors = {name: scale.factor(unit_of(name)) for name in signals.column_names}
-    return {name: signals[name].to_numpy() / factor for name, factor in factors.items() if not name.endswith(UNLOADED)}
+    compared = [name for name in factors if not any(part in name for part in UNLOADED)]
+    return {name: signals[name].to_numpy() / factors[name] for name in compared}
 
 
 @pytest.mark.parametrize("body", BODIES)
