@@ -43,7 +43,7 @@ LONGEST_SHIFT = 0.5
 """Longest way of a foothold along the walk from its place on level ground, as a part of a step."""
 
 STANCE_SAMPLES = np.linspace(-1.0, 1.0, 9)
-"""Places of the pelvis in a stance at which the reach of the leg is tried, from its begin to its end."""
+"""Places of the pelvis in a stance, from its beginning to its end, at which the reach of the leg is checked."""
 
 ROUNDING = 1e-6
 """Height by which the legs may be too short before the pelvis is lowered [m]."""
@@ -56,7 +56,7 @@ class PlacedSwing(NamedTuple):
         curve: Path of the swing on level ground.
         start, goal: Footholds.
         places: Their places on level ground, x + iy [m].
-        added: What clears the ground.
+        added: Additional height and delays that clear the ground.
         heel_rise: Pitch of the sole at lift-off [rad].
         front: Distance of the toe end ahead of the ankle [m].
     """
@@ -104,7 +104,7 @@ class PlacedSwing(NamedTuple):
         return ScalarMotion(float(share), float(slope) * foot.progress_rate / (end - begin))
 
     def _shift(self, share: ScalarMotion, moved: ScalarMotion) -> PlanarMotion:
-        """Way over the level plane from the place on level ground: another time to move, and other footholds."""
+        """Displacement over the plane from the path on level ground: the foot moves later, and to other footholds."""
         (begin, end), length = (self.start.position, self.goal.position), self.places[1] - self.places[0]
         first, last = begin - self.places[0], end - self.places[1]
         return PlanarMotion(
@@ -123,7 +123,7 @@ class PlacedSwing(NamedTuple):
         return ScalarMotion(low + share.value * (high - low), rate)
 
     def _pivot(self, flat: ScalarMotion, pitch: ScalarMotion) -> PlanarMotion:
-        """Way x + iz of the sole's place below the ankle while the sole turns about its toe end."""
+        """Displacement x + iz of the point of the sole below the ankle, while the sole turns about its toe end."""
         before, after = (self.front * cmath.exp(-1j * angle.value) for angle in (flat, pitch))
         return PlanarMotion(before - after, 1j * (pitch.rate * after - flat.rate * before))
 

@@ -108,7 +108,7 @@ def test_the_walker_obeys_the_page(drive: Any, tab: Any) -> None:
     wait_until(tab, lambda: float(text(tab, "speed")) > 0.15)
     pushed = float(text(tab, "time"))
     tab.get_by_text("push right (numpad 6)").click()
-    wait_until(tab, lambda: float(text(tab, "time")) > pushed + 1.0)
+    wait_until(tab, lambda: float(text(tab, "time")) > pushed + 3.0)
     tab.keyboard.press("Space")
     wait_until(tab, lambda: text(tab, "state") == "paused")
     paused = text(tab, "time")
@@ -123,7 +123,7 @@ def test_the_walker_obeys_the_page(drive: Any, tab: Any) -> None:
     # It speeds up, and turns to the left, out of the direction in which it stood.
     velocity = matrix(run.signals, ["com.velocity_x_m_s", "com.velocity_y_m_s"])
     speed = np.hypot(*velocity.T)
-    assert speed[time < 0.3].max() < 0.1 < 0.15 < speed[time < pushed + 0.1].max()
+    assert speed[time < 0.3].max() < 0.1 < 0.2 < speed[time > time[-1] - 0.5].mean()
     w, z = run["pelvis.quaternion_w"][-1], run["pelvis.quaternion_z"][-1]
     assert 2.0 * np.arctan2(z, w) > 0.1
     # The push acts to the right of where it then faces.
