@@ -1,5 +1,7 @@
 """The thesis' walk on ground: feet stand within faces, swings clear, the pelvis climbs; level walks do not change."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -46,6 +48,14 @@ def walk_on(
 
 def feet(target: GaitTarget) -> tuple[FootTarget, FootTarget]:
     return target.right, target.left
+
+
+def motion_of_feet(walk: GaitOnGround) -> Iterator[tuple[GaitTarget, FootTarget]]:
+    """Each foot at each of TIMES."""
+    for t in TIMES:
+        target = walk.target(t)
+        for foot in feet(target):
+            yield target, foot
 
 
 def in_world(target: GaitTarget, foot: FootTarget, path: FootPathParameters = PATH) -> Array:
@@ -96,25 +106,21 @@ def test_on_stairs_a_step_is_a_tread(direction: str, sign: float, skeleton: Skel
 @pytest.mark.parametrize("name", GROUNDS)
 def test_a_sole_at_mid_stance_lies_at_rest_on_the_ground(name: str, skeleton: Skeleton) -> None:
     walk = walk_on(GROUNDS[name], skeleton)
-    for t in TIMES:
-        target = walk.target(t)
-        for foot in feet(target):
-            # The heel may rise in the second half.
-            if foot.in_stance and foot.phase <= 0.5 * PATH.duty_factor:
-                np.testing.assert_allclose(velocity_in_world(target, foot), 0.0, atol=1e-9)
-                points = sole_points(target, foot, skeleton)
-                np.testing.assert_allclose(points[:, 2], GROUNDS[name].height(points[:, :2]), atol=1e-9)
+    for target, foot in motion_of_feet(walk):
+        # The heel may rise in the second half.
+        if foot.in_stance and foot.phase <= 0.5 * PATH.duty_factor:
+            np.testing.assert_allclose(velocity_in_world(target, foot), 0.0, atol=1e-9)
+            points = sole_points(target, foot, skeleton)
+            np.testing.assert_allclose(points[:, 2], GROUNDS[name].height(points[:, :2]), atol=1e-9)
 
 
 @pytest.mark.parametrize("name", GROUNDS)
 def test_a_swinging_sole_does_not_touch_the_ground(name: str, skeleton: Skeleton) -> None:
     """Up to 1 cm: the level path may have the toes 3 mm in the ground, and the lift is smoothed near the footholds."""
     walk = walk_on(GROUNDS[name], skeleton)
-    for t in TIMES:
-        target = walk.target(t)
-        for foot in feet(target):
-            points = sole_points(target, foot, skeleton)
-            assert (points[:, 2] - GROUNDS[name].height(points[:, :2])).min() > -0.01
+    for target, foot in motion_of_feet(walk):
+        points = sole_points(target, foot, skeleton)
+        assert (points[:, 2] - GROUNDS[name].height(points[:, :2])).min() > -0.01
 
 
 @pytest.mark.parametrize("name", GROUNDS)
