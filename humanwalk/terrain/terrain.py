@@ -39,7 +39,7 @@ class Touch(NamedTuple):
         foot: Index of its anchor.
         heel: Middle of the heel's lower end in W [m], shape (3,).
         forward, normal: Axes of the sole in W, shape (3,) each.
-        pressure: Center of pressure in W [m], shape (3,); None without load.
+        pressure: Center of pressure on the sole in W [m], shape (3,); None without load.
         pressure_ahead: Distance of the center of pressure ahead of the ankle [m].
         planned_ahead: The same of the center of pressure that was planned [m].
         is_rolling: Whether the heel is to be up, so that the sole does not show the slope.

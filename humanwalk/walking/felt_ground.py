@@ -124,7 +124,7 @@ class FeltGround(CorrectedGround):
             return self._moved(xy, drop, np.zeros(2))
         xy = touch.pressure[:2]
         n = self.axes(xy)[2]
-        level_error = float(touch.pressure[2] - self.height(xy))
+        level_error = 0.0 if touch.is_rolling else float(touch.pressure[2] - self.height(xy))
         slopes = np.zeros(2)
         pitch = float(touch.forward @ n)
         if touch.pressure_ahead > -feeling.heel_only and not touch.is_rolling:

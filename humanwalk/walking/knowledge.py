@@ -55,8 +55,9 @@ class NoisyKnowledge:
 class BlindKnowledge:
     """Level ground, until the feet feel another one."""
 
-    unevenness: float = quantity(0.03, "m", 0.0, 0.1)
-    """Height by which the ground may stand out of what the feet feel; the swinging foot is lifted by so much more."""
+    unevenness: float = quantity(0.05, "m", 0.0, 0.1)
+    """Height by which the ground may stand out of what the feet feel; the swinging foot is lifted by so much more.
+    Neighboring boxes of 2 cm differ by up to 4 cm (docs/howto/terrain.md)."""
 
     def ground(self, terrain: Ground, random: np.random.Generator, feeling: Feeling = FEELING) -> Ground:
         """See `TerrainKnowledge`."""

@@ -1,5 +1,7 @@
 """What the feet feel of the ground in the phases of the walk."""
 
+import numpy as np
+
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
 from humanwalk.numerics import Array
@@ -7,6 +9,8 @@ from humanwalk.terrain.terrain import Touch
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.walking_reference import BodyState, FootState
+
+UP = np.array((0.0, 0.0, 1.0))
 
 STANDING_TIME = 10.0
 """Time for which both feet have stood before the start [s], long enough to feel the whole slope (our choice)."""
@@ -62,5 +66,8 @@ def _touch(
     is_rolling: bool,
 ) -> Touch:
     heel = foot.ankle - sole.back * foot.forward - ankle_height * foot.normal
+    if pressure is not None:
+        # A foot across an edge feels the plane of its sole, and not how far below it the ground is.
+        pressure = pressure - UP * ((pressure - heel) @ foot.normal / foot.normal[2])
     ahead = 0.0 if pressure is None else float((pressure - foot.ankle) @ foot.forward)
     return Touch(SIDES.index(side), heel, foot.forward, foot.normal, pressure, ahead, planned, is_rolling)

@@ -38,7 +38,16 @@ def test_a_loaded_foot_feels_its_pressure_and_knows_its_heel() -> None:
     (touch,) = touches(state_at(Phase.SINGLE_SUPPORT), BODY, PARAMETERS, SOLE, ANKLE)
     assert touch.heel == pytest.approx((-SOLE.back, 0.1, 0.0))
     assert touch.pressure_ahead == pytest.approx(0.03)
-    assert touch.pressure is FOOT.pressure
+    assert touch.pressure == pytest.approx(FOOT.pressure)
+
+
+def test_a_foot_across_an_edge_feels_the_height_of_its_sole_and_not_that_of_the_ground_below() -> None:
+    pitch, pressure = 0.1, np.array((0.05, 0.1, -0.02))
+    forward, normal = np.array((np.cos(pitch), 0.0, np.sin(pitch))), np.array((-np.sin(pitch), 0.0, np.cos(pitch)))
+    bridging = replace(FOOT, forward=forward, normal=normal, pressure=pressure)
+    (touch,) = touches(state_at(Phase.SINGLE_SUPPORT), replace(BODY, left=bridging), PARAMETERS, SOLE, ANKLE)
+    assert touch.pressure[:2] == pytest.approx(pressure[:2])
+    assert (touch.pressure - touch.heel) @ normal == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_stance_foot_compares_its_pressure_with_the_planned_one() -> None:
