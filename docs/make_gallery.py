@@ -30,8 +30,8 @@ FIGURE_DPI = 120
 STRIP_BEGIN = 6.0
 """Of the strip of one stride [s]."""
 
-FIRST_PICTURE = VideoParameters(frame_rate=16.0, width=480, height=400, begin=7.0, end=11.0)
-"""README's moving picture: the walker is pushed from behind at 8 s, and walks on."""
+FIRST_PICTURE = VideoParameters(frame_rate=10.0, width=480, height=300, speed=4.0)
+"""README's moving picture: the whole `course` in a quarter of its time."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,12 @@ CLIP = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.
 SIDE = VideoParameters(frame_rate=25.0, width=640, height=360, begin=4.0, end=8.0, view="side")
 
 SHOTS = {
+    "course": Shot(
+        "course",
+        video=VideoParameters(frame_rate=20.0, width=640, height=360, speed=4.0),
+        # Up and down the ramps, curb, cross slope, boxes, stairs up and down, beam.
+        instants=(10.0, 18.0, 24.0, 32.0, 37.0, 47.5, 53.0, 60.0),
+    ),
     "walk": Shot(
         "walk",
         video=CLIP,
@@ -144,7 +150,7 @@ def main(names: Sequence[str]) -> None:
     if names:
         return
     draw_people(IMAGES / "subjects.png", console)
-    record_video(RUNS / "push", IMAGES / "walker.webp", FIRST_PICTURE)
+    record_video(RUNS / "course", IMAGES / "walker.webp", FIRST_PICTURE)
     write_gait_figures(IMAGES / "thesis")
     for controller, scenario in DIAGRAMS.items():
         draw_diagram(make_diagram(load_scenario(scenario)), IMAGES / f"diagram_{controller}.svg")

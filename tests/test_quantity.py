@@ -81,6 +81,12 @@ def test_a_wrong_unit_is_recognized(value: float, unit: str, high: float, other_
 
 
 @pytest.mark.parametrize("unit", UNIT_MISTAKES)
+def test_no_unit_is_guessed_for_a_fraction(unit: str) -> None:
+    with pytest.raises(ParameterError, match=r"nearest allowed value is 0.5$"):
+        require_in_range("x", 0.8, unit, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("unit", UNIT_MISTAKES)
 def test_no_unit_is_guessed_for_a_value_that_is_too_small(unit: str) -> None:
     with pytest.raises(ParameterError, match=r"nearest allowed value is 10$"):
         require_in_range("x", -1.0, unit, 10.0, 1e9)

@@ -124,10 +124,18 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
 
 
 def foot_lift(signals: pa.Table, side: Side) -> float | None:
-    """Median over the strides of the sole's greatest height above its initial height [m]; None without strides."""
+    """Median over the strides of the sole's greatest height [m] above its initial one, less the rise of the ground.
+
+    The ground has risen to the higher of the places where the foot stands before and after the swing. None without
+    strides.
+    """
     height = signals[f"{side.lower()}_sole.z_m"].to_numpy()
-    peaks = [height[begin:end].max() for begin, end in events_of(signals, side).strides]
-    return float(np.median(peaks) - height[0]) if peaks else None
+    strides = [height[begin:end] for begin, end in events_of(signals, side).strides]
+    if not strides:
+        return None
+    ground = np.array([stride.min() for stride in strides])
+    rise = np.maximum(ground, np.append(ground[1:], ground[-1])) - ground[0]
+    return float(np.median([stride.max() for stride in strides] - rise) - height[0])
 
 
 def foot_line_error(signals: pa.Table, side: Side) -> float:

@@ -212,6 +212,15 @@ def test_foot_lift_is_the_peak_above_the_start_and_needs_a_stride(columns: tuple
     assert foot_lift(walk_of(columns, 0.5), "Right") is None
 
 
+def test_foot_lift_does_not_count_the_rise_of_the_ground(columns: tuple[str, ...]) -> None:
+    signals = walk_of(columns)
+    name = "right_sole.z_m"
+    climb = signals[name].to_numpy() + 0.1 * signals["time_s"].to_numpy()
+    climbed = signals.set_column(signals.column_names.index(name), name, pa.array(climb))
+    # Up to the next place the ground rises by that of a stride.
+    assert foot_lift(climbed, "Right") == pytest.approx(foot_lift(signals, "Right"), abs=0.1 * STRIDE)
+
+
 def test_foot_line_error_is_the_greatest_either_way(columns: tuple[str, ...]) -> None:
     signals = walk_of(columns, **{"right_sole.y_m": lambda t: -0.1 + np.where(t == 2.0, -0.03, 0.02)})
     assert foot_line_error(signals, "Right") == pytest.approx(0.05)

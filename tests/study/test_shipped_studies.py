@@ -48,6 +48,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_stones", 40),
         ("terrain_course", 40),
         ("terrain_pushes", 80),
+        ("terrain_bodies", 80),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
