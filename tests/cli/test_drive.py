@@ -32,7 +32,15 @@ def script() -> Iterator[Hand]:
 
 
 @pytest.fixture
-def drive(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
+def interruptible() -> Iterator[None]:
+    """A process that Ctrl-C reaches: a shell starts background jobs with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def drive(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, interruptible: None) -> Any:
     """Drives the thesis' walker from a page whose controls follow the script."""
     hands = script()
 
