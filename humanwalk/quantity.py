@@ -175,7 +175,7 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
         return "give a finite number"
     for factor, other_unit in UNIT_MISTAKES.get(unit, {}).items():
         # No one gives less than 1 of a smaller unit.
-        if low <= value / factor <= high and value > max(high, 1.0):
+        if low <= value / factor <= high and value > high and value >= 1.0:
             return f"if it is in {other_unit}, write {value / factor:.4g} ({unit})"
     nearest = low if value < low else high
     return f"the nearest allowed value is {nearest:g}"
