@@ -50,6 +50,10 @@ class Pacing:
     friction_use: float = quantity(0.8, "", 0.1, 1.0)
     """Share of the friction that forces of the ground use at most; shortens steps on ice and on slopes."""
 
+    free_lead: float = quantity(0.35, "", 0.0, 1.0)
+    """Distance of a foothold ahead of its place in the gait, relative to the length of a step, for which the step after
+    it is not shorter: on boxes of 40 cm every step of 32 cm goes to the next box (docs/balance.md)."""
+
     min_length: float = quantity(0.05, "m", 0.0, 0.5)
     """Mean length of the desired steps from which on the speed follows the footholds."""
 
@@ -75,7 +79,7 @@ class Preview(NamedTuple):
         footholds: The next foothold, and those after it; none in standing.
         moves: Displacements from each foothold to the next, beyond those of the gait [m]; 0 on a plane.
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
-        ahead: Distance of the next foothold ahead of its place in the gait [m]; the step after it is shorter by that.
+        ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
     """
 
     footholds: tuple[Foothold, ...] = ()
@@ -191,7 +195,8 @@ class FootholdPlanner:
             footholds.append(foothold)
             length += ((foothold.position - desired) / direction + shortened).real
             desired_length += step.real
-            ahead = max(((foothold.position - desired) / direction).real, 0.0)
+            lead = ((foothold.position - desired) / direction).real
+            ahead = max(lead - self.pacing.free_lead * abs(step.real), 0.0)
             first_ahead = ahead if len(moves) == 1 else first_ahead
             stance, side = foothold, other_side(side)
         pace = 1.0
