@@ -38,12 +38,14 @@ def rollover_speed(
 def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
     """Time from heel-off to touchdown of the other foot in the step from `start` to `goal` [s].
 
-    Before a step up the heel stays on the ground: a slow walker on its toes cannot move the zero-moment point back.
-    Before a step down it rises earlier, because the ankle bends no further while the body sinks.
+    Before a step up, and onto another face, the heel stays on the ground: a walker on its toes cannot move the
+    zero-moment point back, and on another face the foothold cannot follow the body. Before a step down it rises
+    earlier, because the ankle bends no further while the body sinks.
     """
     swing, rockers, step = parameters.swing, parameters.rockers, start.step_to(goal)
-    earlier = swing.descent_share(step) * (rockers.descent - rockers.ball)
-    return rockers.ball * swing.rolling_share(max(step, 0.0)) + earlier
+    level = rockers.ball * swing.rolling_share(max(step, 0.0)) if start.face.covers_as(goal.face) else 0.0
+    descent = swing.descent_share(step)
+    return (1.0 - descent) * level + descent * rockers.descent
 
 
 def stance_rollover_speed(
