@@ -52,7 +52,7 @@ class Pacing:
 
     free_lead: float = quantity(0.35, "", 0.0, 1.0)
     """Distance of a foothold ahead of its place in the gait, relative to the length of a step, for which the step after
-    it is not shorter: on boxes of 40 cm every step of 32 cm goes to the next box (docs/balance.md)."""
+    it is not shorter: on boxes of 40 cm every step of 32 cm goes to the next box."""
 
     min_length: float = quantity(0.05, "m", 0.0, 0.5)
     """Mean length of the desired steps from which on the speed follows the footholds."""

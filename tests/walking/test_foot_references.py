@@ -8,7 +8,7 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
-from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.footholds import LEVEL, Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -104,6 +104,13 @@ def test_before_a_step_up_the_heel_stays_on_the_ground_and_before_one_down_it_ri
     assert task(0.0, 1.5 * ROCKERS.ball) is FootTask.FLAT
     assert task(-0.18, 0.99 * ROCKERS.descent) is FootTask.HEEL_OFF
     assert task(-0.18, 1.01 * ROCKERS.descent) is FootTask.FLAT
+
+
+def test_onto_another_face_the_heel_stays_on_the_ground() -> None:
+    beside = LEVEL._replace(lower=(0.8, -10.0))
+    boxes = state_at(TIMING.step - 1e-3)._replace(left=STANCE._replace(face=LEVEL._replace(upper=(0.8, 10.0))))
+    assert stance_foot(boxes, swing_to(NEXT._replace(face=beside)), WALK, PARAMETERS).task is FootTask.FLAT
+    assert stance_foot(boxes, swing_to(NEXT._replace(face=boxes.left.face)), WALK, PARAMETERS).task is FootTask.HEEL_OFF
 
 
 @pytest.mark.parametrize("ground", [0.18, -0.18])

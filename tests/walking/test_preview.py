@@ -1,6 +1,7 @@
 """The next footholds: those of the gait on a plane, on faces elsewhere, with a speed and duration that suit them."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Course, Ground, Plane
+from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.slope import Flat
 from humanwalk.terrain.steps import Stairs
 from humanwalk.walking.foot_placement import StepPlacement
@@ -44,6 +46,14 @@ def test_on_stairs_every_step_is_one_tread_and_the_pace_follows() -> None:
     heights = [foothold.ground / 0.18 for foothold in preview.footholds]
     assert heights == pytest.approx([5, 6, 7])
     assert preview.pace == pytest.approx(0.29 / 0.45, rel=0.05)
+
+
+@pytest.mark.parametrize("free_lead, boxes", [(0.0, [4.4, 4.4, 4.8]), (0.35, [4.4, 4.8, 5.2])])
+def test_on_boxes_longer_than_a_step_the_lead_is_made_up_for_or_free(free_lead: float, boxes: list[float]) -> None:
+    ground = Course(pieces=(Rough(length=8.0, cell_size=0.4, height=0.01),), run_up=0.8)
+    planner = replace(PLANNER, pacing=replace(PACING, free_lead=free_lead))
+    footholds = planner.preview(ground, Foothold.on(ground, 4.08 + 0.08j), "Left", 0.0, gait(0.32)).footholds
+    assert [foothold.face.lower[0] for foothold in footholds] == pytest.approx(boxes)
 
 
 def test_on_ice_the_steps_are_short() -> None:
