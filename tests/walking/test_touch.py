@@ -46,6 +46,7 @@ def test_a_foot_across_an_edge_feels_the_height_of_its_sole_and_not_that_of_the_
     forward, normal = np.array((np.cos(pitch), 0.0, np.sin(pitch))), np.array((-np.sin(pitch), 0.0, np.cos(pitch)))
     bridging = replace(FOOT, forward=forward, normal=normal, pressure=pressure)
     (touch,) = touches(state_at(Phase.SINGLE_SUPPORT), replace(BODY, left=bridging), PARAMETERS, SOLE, ANKLE)
+    assert touch.pressure is not None
     assert touch.pressure[:2] == pytest.approx(pressure[:2])
     assert (touch.pressure - touch.heel) @ normal == pytest.approx(0.0, abs=1e-12)
 
