@@ -38,6 +38,9 @@ class Feeling:
     search_rate: float = quantity(1.5, "rad/s", 0.0, 10.0)
     """Rate at which the ground is expected lower under a ball that does not touch it (our choice)."""
 
+    still_rate: float = quantity(0.3, "rad/s", 0.0, 10.0)
+    """Pitch rate up to which a foot is still: a fifth of `search_rate` (our choice)."""
+
     smoothing_time: float = quantity(0.015, "s", 0.0, 1.0)
     """Time constant with which slope and height under a foot follow what is felt (our choice)."""
 
@@ -127,9 +130,12 @@ class FeltGround(CorrectedGround):
         level_error = 0.0 if touch.is_rolling else float(touch.pressure[2] - self.height(xy))
         slopes = np.zeros(2)
         pitch = float(touch.forward @ n)
-        if touch.pressure_ahead > -feeling.heel_only and not touch.is_rolling:
+        is_on_heel = touch.pressure_ahead <= -feeling.heel_only
+        # A foot that does not turn its toes down although it should has something under its ball.
+        shows_slope = not is_on_heel or (touch.is_still and pitch > ALIGNED)
+        if shows_slope and not touch.is_rolling:
             slopes = share * (-touch.normal[:2] / touch.normal[2] + n[:2] / n[2])
-        elif touch.pressure_ahead <= -feeling.heel_only < touch.planned_ahead - feeling.missed and abs(pitch) < ALIGNED:
+        elif is_on_heel and -feeling.heel_only < touch.planned_ahead - feeling.missed and abs(pitch) < ALIGNED:
             slopes = -feeling.search_rate * dt * touch.forward[:2]
         return self._moved(xy, share * level_error, slopes)
 

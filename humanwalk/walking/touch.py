@@ -35,6 +35,7 @@ def touches(
     """
     is_landing = state.is_stepping and state.steps > 0 and state.elapsed <= parameters.rockers.heel
     is_rolling = state.is_stepping and state.elapsed > state.timing.step - parameters.rockers.ball
+    has_landed = state.is_stepping and not is_landing and not is_rolling
     found = []
     for side in standing_feet(state):
         foot = body.foot(side)
@@ -43,7 +44,9 @@ def touches(
             continue
         pressure = foot.pressure if is_loaded else None
         planned = ((state.zmp - foot.position) / state.direction).real
-        found.append(_touch(side, foot, pressure, planned, sole, ankle_height, is_rolling))
+        is_still = has_landed and abs(foot.pitch_rate) < parameters.feeling.still_rate
+        touch = _touch(side, foot, pressure, planned, sole, ankle_height, is_rolling)
+        found.append(touch._replace(is_still=is_still))
     return tuple(found)
 
 

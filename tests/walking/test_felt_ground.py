@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from humanwalk.numerics import Array
 from humanwalk.terrain import Plane
 from humanwalk.terrain.terrain import Touch
-from humanwalk.walking.felt_ground import MAX_SLOPE, Feeling, FeltGround
+from humanwalk.walking.felt_ground import ALIGNED, MAX_SLOPE, Feeling, FeltGround
 
 DT = 0.006
 slopes = st.floats(-0.15, 0.15)
@@ -87,6 +87,16 @@ def test_a_heel_alone_expects_the_ground_ahead_lower_and_lower() -> None:
     ground = felt((touch,), 0.02)
     assert float(ground.height(np.array((0.15, 0.0)))) < -0.002
     assert float(ground.height(np.array((-0.04, 0.0)))) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("is_still, slope", [(True, 0.1), (False, 0.0)])
+def test_a_foot_that_stands_still_on_its_heel_with_its_toes_up_has_something_under_its_ball(
+    is_still: bool, slope: float
+) -> None:
+    on_heel = {"pressure": np.array((-0.04, 0.0, -0.004)), "pressure_ahead": -0.04}
+    ground = felt((touch_on(Plane(slope=0.1), 0.0, is_still=is_still, **on_heel),), 0.2)
+    # Within the angle to which heel and ball touch the ground.
+    assert ground.face_at(np.zeros(2)).gradient[0] == pytest.approx(slope, abs=1.1 * ALIGNED)
 
 
 def test_pressure_on_the_heel_that_was_planned_there_shows_nothing() -> None:

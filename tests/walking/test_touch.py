@@ -82,6 +82,18 @@ def test_a_landing_foot_without_load_feels_no_pressure_and_later_nothing() -> No
     assert touches(state_at(Phase.SINGLE_SUPPORT), airborne, PARAMETERS, SOLE, ANKLE) == ()
 
 
+@pytest.mark.parametrize(
+    "elapsed, pitch_rate, is_still",
+    [(0.3, 0.1, True), (0.3, -1.5, False), (0.5 * PARAMETERS.rockers.heel, 0.1, False), (TIMING.step, 0.1, False)],
+)
+def test_a_foot_is_still_if_it_does_not_turn_between_landing_and_heel_off(
+    elapsed: float, pitch_rate: float, is_still: bool
+) -> None:
+    body = replace(BODY, left=replace(FOOT, pitch_rate=pitch_rate))
+    (touch,) = touches(state_at(Phase.SINGLE_SUPPORT, elapsed), body, PARAMETERS, SOLE, ANKLE)
+    assert touch.is_still is is_still
+
+
 def test_a_foot_rolls_from_heel_off_on() -> None:
     for elapsed, rolls in ((TIMING.step - 1.5 * PARAMETERS.rockers.ball, False), (TIMING.step - 0.01, True)):
         (touch,) = touches(state_at(Phase.SINGLE_SUPPORT, elapsed), BODY, PARAMETERS, SOLE, ANKLE)
