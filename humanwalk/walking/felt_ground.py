@@ -98,9 +98,8 @@ class FeltGround(CorrectedGround):
         places = np.array([anchor.place for anchor in anchors])
         offsets = np.array([anchor.offset for anchor in anchors])
         gradients = np.array([anchor.gradient for anchor in anchors])
-        away = xy[..., None, :] - places
-        nearest = np.square(away).sum(axis=-1).argmin(axis=-1)
-        off = np.take_along_axis(away, nearest[..., None, None], axis=-2)[..., 0, :]
+        nearest = np.square(xy[..., None, :] - places).sum(axis=-1).argmin(axis=-1)
+        off = xy - places[nearest]
         distance = np.hypot(off[..., 0], off[..., 1])[..., None]
         reach = self.feeling.near
         near = off * np.minimum(1.0, reach / np.maximum(distance, reach))
