@@ -39,11 +39,15 @@ class Face(NamedTuple):
         return self.gradient == (0.0, 0.0)
 
     @property
+    def normal(self) -> Array:
+        """Upward unit normal, shape (3,)."""
+        a, b = self.gradient
+        return np.array((-a, -b, 1.0)) / math.sqrt(1.0 + a * a + b * b)
+
+    @property
     def R_SW(self) -> Array:
         """Axes of the face, shape (3, 3); see `Terrain.axes`."""
-        if self.is_level:
-            return np.eye(3)
-        return surface_axes(np.array((-self.gradient[0], -self.gradient[1], 1.0)))
+        return np.eye(3) if self.is_level else surface_axes(self.normal)
 
     @property
     def corners(self) -> Array:

@@ -115,7 +115,7 @@ def _boxes(face: Face, bottom: float) -> Iterator[tuple[RigidTransform, Box]]:
         center = np.array((x0 + x1, y0 + y1, bottom + top)) / 2.0
         yield RigidTransform(center), Box(x1 - x0, y1 - y0, top - bottom)
         return
-    normal = face.R_SW[2]
+    normal = face.normal
     across = np.array((0.0, 1.0, face.gradient[1])) / np.hypot(1.0, face.gradient[1])
     along = np.cross(across, normal)
     turn = abs(along[1] / along[0])

@@ -114,4 +114,4 @@ def _turned(start: Foothold, goal: Foothold, progress: float) -> Array:
     if start.face.gradient == goal.face.gradient:
         return goal.R_WS
     s = blend(0.0, 1.0, progress, 1.0).value
-    return surface_axes((1.0 - s) * start.R_WS[:, 2] + s * goal.R_WS[:, 2]).T
+    return surface_axes((1.0 - s) * start.face.normal + s * goal.face.normal).T
