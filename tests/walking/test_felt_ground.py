@@ -93,8 +93,9 @@ def test_a_heel_alone_expects_the_ground_ahead_lower_and_lower() -> None:
 def test_a_foot_that_stands_still_on_its_heel_with_its_toes_up_has_something_under_its_ball(
     is_still: bool, slope: float
 ) -> None:
-    on_heel = {"pressure": np.array((-0.04, 0.0, -0.004)), "pressure_ahead": -0.04}
-    ground = felt((touch_on(Plane(slope=0.1), 0.0, is_still=is_still, **on_heel),), 0.2)
+    heel = np.array((-0.04, 0.0, -0.004))
+    touch = touch_on(Plane(slope=0.1), 0.0, pressure=heel, pressure_ahead=-0.04, is_still=is_still)
+    ground = felt((touch,), 0.2)
     # Within the angle to which heel and ball touch the ground.
     assert ground.face_at(np.zeros(2)).gradient[0] == pytest.approx(slope, abs=1.1 * ALIGNED)
 
