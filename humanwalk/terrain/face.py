@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import cross_matrix
 
 Color = tuple[float, float, float]
 """Red, green and blue, 0 to 1."""
@@ -96,8 +97,7 @@ class Face(NamedTuple):
 
 def surface_axes(normal: Array) -> Array:
     """Return R_SW of a surface from its upward normal of any length; shape (..., 3, 3) for (..., 3)."""
-    a, b, c = np.moveaxis(normal / np.sqrt((normal * normal).sum(axis=-1, keepdims=True)), -1, 0)
-    # The x axis has no part along y of W, and the y axis is the cross product of the other two.
-    level = np.hypot(a, c)
-    rows = (c / level, np.zeros_like(a), -a / level), (-a * b / level, level, -b * c / level), (a, b, c)
-    return np.stack([x for row in rows for x in row], axis=-1).reshape(*normal.shape, 3)
+    z = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    x = np.stack((z[..., 2], np.zeros_like(z[..., 0]), -z[..., 0]), axis=-1)
+    x /= np.linalg.norm(x, axis=-1, keepdims=True)
+    return np.stack((x, np.matvec(cross_matrix(z), x), z), axis=-2)

@@ -43,7 +43,7 @@ class Touch(NamedTuple):
         pressure_ahead: Distance of the center of pressure ahead of the ankle [m].
         planned_ahead: The same of the center of pressure that was planned [m].
         is_rolling: Whether the heel is to be up, so that the sole does not show the slope.
-        is_still: Whether the foot should have turned its sole onto the ground by now, and does not turn.
+        is_still: Whether the foot does not turn, between landing and heel-off.
     """
 
     foot: int
@@ -54,7 +54,7 @@ class Touch(NamedTuple):
     pressure_ahead: float
     planned_ahead: float
     is_rolling: bool
-    is_still: bool = False
+    is_still: bool
 
 
 class Ground(Protocol):

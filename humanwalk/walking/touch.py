@@ -45,8 +45,7 @@ def touches(
         pressure = foot.pressure if is_loaded else None
         planned = ((state.zmp - foot.position) / state.direction).real
         is_still = has_landed and abs(foot.pitch_rate) < parameters.feeling.still_rate
-        touch = _touch(side, foot, pressure, planned, sole, ankle_height, is_rolling)
-        found.append(touch._replace(is_still=is_still))
+        found.append(_touch(side, foot, pressure, planned, sole, ankle_height, is_rolling, is_still))
     return tuple(found)
 
 
@@ -54,8 +53,7 @@ def first_touches(body: BodyState, sole: SoleExtent, ankle_height: float) -> tup
     """Return what the feet feel at the start, when both stand with the whole sole; see `touches`."""
     feet = ((side, body.foot(side)) for side in SIDES)
     return tuple(
-        _touch(side, foot, foot.ankle - ankle_height * foot.normal, 0.0, sole, ankle_height, is_rolling=False)
-        for side, foot in feet
+        _touch(side, foot, foot.ankle - ankle_height * foot.normal, 0.0, sole, ankle_height) for side, foot in feet
     )
 
 
@@ -66,11 +64,12 @@ def _touch(
     planned: float,
     sole: SoleExtent,
     ankle_height: float,
-    is_rolling: bool,
+    is_rolling: bool = False,
+    is_still: bool = False,
 ) -> Touch:
     heel = foot.ankle - sole.back * foot.forward - ankle_height * foot.normal
     if pressure is not None:
         # A foot across an edge feels the plane of its sole, and not how far below it the ground is.
         pressure = pressure - UP * ((pressure - heel) @ foot.normal / foot.normal[2])
     ahead = 0.0 if pressure is None else float((pressure - foot.ankle) @ foot.forward)
-    return Touch(SIDES.index(side), heel, foot.forward, foot.normal, pressure, ahead, planned, is_rolling)
+    return Touch(SIDES.index(side), heel, foot.forward, foot.normal, pressure, ahead, planned, is_rolling, is_still)

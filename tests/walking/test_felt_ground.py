@@ -22,7 +22,7 @@ def touch_on(plane: Plane, height: float, foot: int = 0, x: float = 0.0, **chang
     """A sole that lies on a plane raised by a height [m], with its pressure in the middle."""
     axes = plane.axes(np.zeros(2))
     heel, pressure = (surface_point(plane, np.array((x + along, 0.0)), height) for along in (-0.05, 0.04))
-    touch = Touch(foot, heel, axes[0], axes[2], pressure, pressure_ahead=0.04, planned_ahead=0.04, is_rolling=False)
+    touch = Touch(foot, heel, axes[0], axes[2], pressure, 0.04, 0.04, is_rolling=False, is_still=False)
     return touch._replace(**changes)
 
 
