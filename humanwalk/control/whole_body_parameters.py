@@ -46,11 +46,11 @@ class WholeBodyParameters:
     """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
 
-    pressure_weight: float = quantity(0.0, "", 0.0, 1e5)
+    pressure_weight: float = quantity(1000.0, "", 0.0, 1e5)
     """Weight of the center of pressure at the planned zero-moment point, per squared acceleration of the center of mass
     that would move it there. With `com_weight` alone the angular momentum of the swinging leg moves the pressure."""
 
-    com_height: TaskGains = critical(100.0, 50.0)
+    com_height: TaskGains = critical(100.0, 230.0)
     """Height of the center of mass."""
 
     stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
@@ -65,7 +65,7 @@ class WholeBodyParameters:
     heel_off: TaskGains = critical(400.0, 40.0)
     """Pitch of a foot whose heel rises."""
 
-    swing_position: TaskGains = critical(300.0, 50.0)
+    swing_position: TaskGains = critical(300.0, 60.0)
     """Position of the swing ankle."""
 
     swing_rotation: TaskGains = critical(400.0, 20.0)
@@ -74,10 +74,10 @@ class WholeBodyParameters:
     swing_acceleration_limit: float = quantity(100.0, "m/s2", 10.0, 1000.0)
     """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
 
-    pelvis: TaskGains = critical(200.0, 5.0)
+    pelvis: TaskGains = critical(200.0, 2.5)
     """Rotation of the pelvis."""
 
-    chest: TaskGains = critical(150.0, 5.0)
+    chest: TaskGains = critical(150.0, 10.0)
     """Rotation of the chest."""
 
     spine: TaskGains = critical(100.0, 0.3)

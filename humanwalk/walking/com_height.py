@@ -23,7 +23,7 @@ class ComHeight:
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
-    amplitude: float = quantity(0.009, "s2/m", 0.0, 0.05)
+    amplitude: float = quantity(0.0085, "s2/m", 0.0, 0.05)
     """Amplitude of the arcs per squared speed; the drop between two straight legs is proportional to the square of the
     step length."""
 

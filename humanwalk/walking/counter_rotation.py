@@ -17,7 +17,7 @@ class CounterRotation:
     chest: float = quantity(0.15, "rad/m", 0.0, 1.0)
     """Yaw of the chest, against it."""
 
-    head: float = quantity(0.0, "rad/m", 0.0, 1.0)
+    head: float = quantity(0.15, "rad/m", 0.0, 1.0)
     """Yaw of the head relative to the chest, against it: with the value of the chest the head is steady in space."""
 
     arms: float = quantity(0.6, "rad/m", 0.0, 2.0)

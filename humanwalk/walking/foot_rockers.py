@@ -16,7 +16,7 @@ class FootRockers:
     heel: float = quantity(0.15, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.10, "s", 0.0, 0.3)
+    ball: float = quantity(0.135, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
@@ -28,7 +28,7 @@ class FootRockers:
     full_pitch_speed: float = quantity(1.0, "m/s", 0.1, 5.0)
     """Forward speed from which on the pitch at toe-off is greatest."""
 
-    late_rise: float = quantity(0.0, "", 0.0, 1.0)
+    late_rise: float = quantity(0.2, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)

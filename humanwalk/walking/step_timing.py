@@ -12,7 +12,7 @@ class StepTiming:
     step: float = quantity(0.53, "s", 0.3, 1.2)
     """From touchdown to touchdown of the other foot."""
 
-    double_support: float = quantity(0.10, "s", 0.04, 0.4)
+    double_support: float = quantity(0.09, "s", 0.04, 0.4)
     """First part of the step."""
 
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)

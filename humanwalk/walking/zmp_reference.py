@@ -44,7 +44,8 @@ def desired_gait(
         roll=complex(max(roll.real, descending_roll), roll.imag),
         double_support=timing.double_support,
         single_support=timing.single_support,
-        pivot=parameters.support.pivot * max(command.forward, 0.0),
+        # With the heel up before a step down the pivot stays where `descent` puts it.
+        pivot=(1.0 - descent) * parameters.support.pivot * max(command.forward, 0.0),
         hold=min(descent * parameters.rockers.descent, timing.single_support),
     )
 

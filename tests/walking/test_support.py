@@ -40,7 +40,9 @@ def test_it_obeys_the_pendulum(old: float, stance: float, height: float, elapsed
 
 
 def test_the_ground_under_the_zero_moment_point_goes_to_the_stance_foot_in_double_support() -> None:
-    grounds = [support_motion(state_at(t, 0.1, 0.3, 0.2), 0.0, FREQUENCY).ground for t in (0.0, 0.05, 0.1, 0.4)]
+    exchange = TIMING.double_support
+    times = (0.0, 0.5 * exchange, exchange, 4.0 * exchange)
+    grounds = [support_motion(state_at(t, 0.1, 0.3, 0.2), 0.0, FREQUENCY).ground for t in times]
     assert grounds == pytest.approx([0.1, 0.2, 0.3, 0.3])
 
 

@@ -82,12 +82,15 @@ def test_the_remaining_segments_last_to_the_end_of_the_step_and_are_connected(
     assert sum(segment.duration for segment in segments) == pytest.approx(TIMING.step - elapsed)
     for first, second in pairwise(segments):
         assert first.end == pytest.approx(second.start)
-    end = PARAMETERS.support.center + PARAMETERS.support.roll * 1.0
+    end = PARAMETERS.support.center + PARAMETERS.support.roll * 1.0 + PARAMETERS.support.pivot * 1.0
     assert state.local(segments[-1].end) == pytest.approx(end, abs=1e-9)
 
 
 SWINGING = replace(PARAMETERS, support=replace(PARAMETERS.support, pivot=0.05))
 """Parameters with angular momentum of the swinging leg."""
+
+PLAIN = replace(PARAMETERS, support=replace(PARAMETERS.support, pivot=0.0))
+"""The same without."""
 
 
 @given(st.sampled_from(SIDES), st.floats(0.0, 0.99), st.floats(-3.0, 3.0))
@@ -98,9 +101,9 @@ def test_the_zero_moment_point_does_not_depend_on_the_angular_momentum(
     elapsed = fraction * TIMING.step
     phase = Phase.DOUBLE_SUPPORT if elapsed < TIMING.double_support else Phase.SINGLE_SUPPORT
     state = state_at(elapsed, phase, stance, heading)
-    plain, swinging = (desired_gait(state, Command(1.0), parameters) for parameters in (PARAMETERS, SWINGING))
+    plain, swinging = (desired_gait(state, Command(1.0), parameters) for parameters in (PLAIN, SWINGING))
     pivot = remaining_pivot(state, swinging, SWINGING)[0].start
-    zmp = remaining_pivot(state, plain, PARAMETERS)[0].start
+    zmp = remaining_pivot(state, plain, PLAIN)[0].start
     assert pivot - pivot_lead(state, swinging) == pytest.approx(zmp, abs=1e-9)
     assert pivot_lead(state, plain) == 0.0
 
