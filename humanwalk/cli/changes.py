@@ -6,11 +6,14 @@ import inspect
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
 from humanwalk.quantity import ParameterError
+
+if TYPE_CHECKING:
+    from humanwalk.body.subject import Subject
 
 # The help lists the shorthands without importing their grammar, and Drake with it; a test compares both.
 
@@ -104,15 +107,38 @@ class Changes:
         Raises:
             ParameterError: a text that cannot be read, or a scenario whose speed cannot be set.
         """
-        from humanwalk.cli.shorthands import (
-            device_overrides,
-            impairment_overrides,
-            load_overrides,
-            push_overrides,
-            terrain_overrides,
-        )
+        from humanwalk.cli.shorthands import push_overrides, terrain_overrides
 
-        overrides = {**(base or {}), **overrides_of(self.set_)}
+        overrides = {**(base or {}), **overrides_of(self.set_), **self._of_subject()}
+        if self.terrain is not None:
+            overrides |= terrain_overrides(self.terrain)
+        if self.push:
+            overrides |= push_overrides(self.push)
+        if self.speed is not None:
+            overrides |= speed_overrides(self.speed, scenario, overrides)
+        if self.shorthands and "description" not in overrides:
+            overrides["description"] = described(scenario, self.shorthands)
+        return overrides
+
+    def subject(self, scenario: str) -> "Subject":
+        """The subject of a scenario with these changes.
+
+        Args:
+            scenario: Name or path.
+
+        Raises:
+            ParameterError: a subject that is not possible.
+        """
+        from humanwalk.scenario import load_scenario
+
+        given = {name: value for name, value in overrides_of(self.set_).items() if name.partition(".")[0] == "subject"}
+        return load_scenario(scenario, {**given, **self._of_subject()}).subject
+
+    def _of_subject(self) -> dict[str, str]:
+        """Overrides of the shorthands of the subject."""
+        from humanwalk.cli.shorthands import device_overrides, impairment_overrides, load_overrides
+
+        overrides = {}
         for name in ("mass", "stature", "sex", "age"):
             if getattr(self, name) is not None:
                 overrides[f"subject.{name}"] = repr(getattr(self, name))
@@ -122,14 +148,6 @@ class Changes:
             overrides |= impairment_overrides(self.impairment)
         if self.device:
             overrides |= device_overrides(self.device)
-        if self.terrain is not None:
-            overrides |= terrain_overrides(self.terrain)
-        if self.push:
-            overrides |= push_overrides(self.push)
-        if self.speed is not None:
-            overrides |= speed_overrides(self.speed, scenario, overrides)
-        if self.shorthands and "description" not in overrides:
-            overrides["description"] = described(scenario, self.shorthands)
         return overrides
 
     @property

@@ -59,8 +59,10 @@ def walk(
     is_dynamic = follow is not None and not kinematic
     if balanced and not is_dynamic:
         raise ParameterError("--balanced: allowed: with --follow FILE and without --kinematic; name the recording")
-    if follow is not None:
-        recorded = balanced_overrides(follow, mapping) if balanced else follow_overrides(follow, mapping, kinematic)
+    if follow is not None and balanced:
+        recorded = balanced_overrides(follow, mapping, changes.subject(scenario))
+    elif follow is not None:
+        recorded = follow_overrides(follow, mapping, kinematic)
     elif kinematic:
         raise ParameterError("--kinematic: no recording; allowed: with --follow FILE; name the recording")
     elif mapping is not None:

@@ -149,21 +149,27 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
     }
 
 
-def balanced_overrides(recording: Path, mapping: Path | None) -> dict[str, str]:
+def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) -> dict[str, str]:
     """Overrides of a scenario that walks a recording on its own feet: its angles as style, its speed and its steps.
+
+    Args:
+        recording: File of joint angles with the path of the pelvis.
+        mapping: Which column is which joint.
+        subject: Who walks it.
 
     Raises:
         ParameterError: The recording cannot be read, or is not a walk.
     """
     style = RecordedStyle(**_files(recording, mapping))
-    gait = style.gait(Subject())
+    gait = style.gait(subject)
     points = [{"time": 0.2, "forward": gait.speed}]
     return {
         "controller": json.dumps(
             {
                 "balanced": {
                     "command": {"points": points, "acceleration": 1.0},
-                    "planner": {"timing": {"step": gait.step}},
+                    # Parameters are those of the reference body.
+                    "planner": {"timing": {"step": gait.step / subject.scale.time}},
                     "style": {"recorded": _files(recording, mapping)},
                 }
             }

@@ -48,6 +48,18 @@ def test_its_speed_and_steps_are_commanded_and_nothing_supports_it(
     assert humanwalk("reproduce", "walked")[0] == 0
 
 
+def test_a_smaller_subject_takes_the_recorded_time_for_a_step(humanwalk: Any, tmp_path: Path, recording: Path) -> None:
+    options = ("--sex", "female", "--set", "subject.stature=1.55", "--mass", "52")
+    code, _, errors = humanwalk(
+        "walk", "--follow", str(recording), "--balanced", *options, "--duration", "0.05", "-o", "walked", *QUICK
+    )
+    assert code == 0, errors
+    scenario: Any = Run.open(tmp_path / "walked").scenario
+    step, scale = scenario.controller.planner.timing.step, scenario.subject.scale
+    assert scale.time < 0.97
+    assert step * scale.time == pytest.approx(STEP, abs=0.01)
+
+
 @pytest.mark.parametrize("options", [("--balanced",), ("--follow", "trial.csv", "--kinematic", "--balanced")])
 def test_without_a_recording_or_without_physics_nothing_can_be_balanced(
     humanwalk: Any, recording: Path, options: tuple[str, ...]
