@@ -64,6 +64,9 @@ PICTURES = {
 DRAWN: dict[str, Callable[[Results], Figure]] = {"actuations": tracking_by_group}
 """Pictures of their own."""
 
+StudyRow = dict[str, Any]
+"""Values of a run by column."""
+
 FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
 WALKED = ("end", "speed m/s", "off the path cm", "cost of transport")
@@ -99,7 +102,7 @@ def balance_bodies() -> str:
 
 
 def balance_invariance() -> str:
-    def line(row: dict[str, Any]) -> list[str]:
+    def line(row: StudyRow) -> list[str]:
         step = (row["gait.step_time_s.right"] + row["gait.step_time_s.left"]) / 2.0
         return [row["settings"], *_walked(row), str(row["steps"]), f"{step:.3f}"]
 
@@ -107,7 +110,7 @@ def balance_invariance() -> str:
 
 
 def balance_seeds() -> str:
-    def lines(rows: list[dict[str, Any]]) -> Iterator[list[str]]:
+    def lines(rows: list[StudyRow]) -> Iterator[list[str]]:
         for speed, walks in groupby(rows, key=lambda row: row[FORWARD]):
             runs = list(walks)
             up = [row for row in runs if row["survived"]]
@@ -125,28 +128,41 @@ def balance_seeds() -> str:
 
 
 def balance_pushes() -> str:
-    return study_section("balance_pushes", _pushes)
+    return study_section("balance_pushes", _pushes_by_time)
 
 
 def balance_pushes_60() -> str:
-    return study_section("balance_pushes_60", _pushes)
+    return study_section("balance_pushes_60", _pushes_by_time)
 
 
-def _pushes(rows: list[dict[str, Any]]) -> str:
-    ends = {(row[PUSH_TIME], row[PUSH_DIRECTION]): _after_push(row) for row in rows}
-    times, directions = (sorted({key[place] for key in ends}) for place in (0, 1))
-    lines = [[f"{time:.2f} s", *(ends[time, direction] for direction in directions)] for time in times]
-    headings = ["push at", *(f"{math.degrees(direction):.0f}°" for direction in directions)]
+def _pushes_by_time(rows: list[StudyRow]) -> str:
+    def end(row: StudyRow) -> str:
+        return "up" if row["survived"] else f"{row['end']} after {row['duration_s'] - row[PUSH_TIME]:.1f} s"
+
+    return _pushes(rows, "push at", lambda row: f"{row[PUSH_TIME]:.2f} s", end)
+
+
+def subjects_pushes() -> str:
+    def section(rows: list[StudyRow]) -> str:
+        return _pushes(rows, "body", lambda row: row["body"], lambda row: "up" if row["survived"] else row["end"])
+
+    return study_section("subjects_pushes", section)
+
+
+def _pushes(
+    rows: list[StudyRow], heading: str, group: Callable[[StudyRow], str], end: Callable[[StudyRow], str]
+) -> str:
+    """How each push ended, a line for each group of rows and a column for each direction."""
+    ends = {(group(row), row[PUSH_DIRECTION]): end(row) for row in rows}
+    names, directions = dict.fromkeys(map(group, rows)), sorted({row[PUSH_DIRECTION] for row in rows})
+    lines = [[name, *(ends[name, direction] for direction in directions)] for name in names]
+    headings = [heading, *(f"{math.degrees(direction):.0f}°" for direction in directions)]
     survived, interval = _survival(rows)
     return f"{survived} survived ({interval}):\n\n" + table(headings, lines)
 
 
-def _after_push(row: dict[str, Any]) -> str:
-    return "up" if row["survived"] else f"{row['end']} after {row['duration_s'] - row[PUSH_TIME]:.1f} s"
-
-
 def push_random() -> str:
-    def section(rows: list[dict[str, Any]]) -> str:
+    def section(rows: list[StudyRow]) -> str:
         def line(level: Level) -> list[str]:
             inside = [rows[index] for index in level.rows]
             ends = [math.degrees(choose(row[PUSH_DIRECTION] for row in inside)) for choose in (min, max)]
@@ -163,8 +179,50 @@ def push_random() -> str:
     return study_section("push_random", section)
 
 
+def subjects_adults() -> str:
+    return _subjects("subjects_adults", lambda row: {"female": "women", "male": "men"}[row["subject.sex"]])
+
+
+def subjects_children() -> str:
+    return _subjects("subjects_children", lambda row: {"female": "girls", "male": "boys"}[row["subject.sex"]])
+
+
+def subjects_loads() -> str:
+    return _subjects("subjects_loads", lambda row: row["load"])
+
+
+def impairments() -> str:
+    return _subjects("impairments", lambda row: row["subject"])
+
+
+def _subjects(name: str, group: Callable[[StudyRow], str]) -> str:
+    """Survival, speed and cost of the groups of a study's subjects."""
+    study = load_study(name)
+
+    def line(label: str, runs: list[StudyRow]) -> list[str]:
+        up = [row for row in runs if row["survived"]]
+        if not up:
+            return [label, *_survival(runs), "-", "-"]
+        commanded = [study.value_at(row, FORWARD) for row in up]
+        ratios = [row["mean_speed_m_s"] / speed - 1.0 for row, speed in zip(up, commanded, strict=True)]
+        costs = [row["cost_of_transport"] for row in up]
+        return [
+            label,
+            *_survival(runs),
+            f"{100 * min(ratios):+.1f} to {100 * max(ratios):+.1f} %",
+            f"{min(costs):.2f} to {max(costs):.2f}",
+        ]
+
+    def section(rows: list[StudyRow]) -> str:
+        groups = dict.fromkeys(map(group, rows))
+        headings = ["subject", "survived", "95 % interval", "speed deviates by", "cost of transport"]
+        return table(headings, [line(label, [row for row in rows if group(row) == label]) for label in groups])
+
+    return study_section(name, section)
+
+
 def thesis_step_height() -> str:
-    def line(row: dict[str, Any]) -> list[str]:
+    def line(row: StudyRow) -> list[str]:
         lift = 50.0 * (row["foot_lift_m.right"] + row["foot_lift_m.left"])
         support = [f"{row['support_force_rms_N']:.0f}", f"{row['support_torque_rms_N_m']:.0f}"]
         height = row["controller.thesis.gait.path.step_height"]
@@ -175,7 +233,7 @@ def thesis_step_height() -> str:
 
 
 def actuations() -> str:
-    def line(row: dict[str, Any]) -> list[str]:
+    def line(row: StudyRow) -> list[str]:
         return [
             f"`{row['actuation']}`",
             f"{1e3 * row['tracking_error_rms_rad']:.2f}",
@@ -193,11 +251,11 @@ def actuations() -> str:
 
 
 def cheap_gains() -> str:
-    def line(gains: str, runs: list[dict[str, Any]]) -> list[str]:
+    def line(gains: str, runs: list[StudyRow]) -> list[str]:
         (free,) = (row for row in runs if row["push"] == "none")
         return [gains, *_walked(free), _survival([row for row in runs if row is not free])[0]]
 
-    def section(rows: list[dict[str, Any]]) -> str:
+    def section(rows: list[StudyRow]) -> str:
         lines = [line(gains, list(runs)) for gains, runs in groupby(rows, key=lambda row: row["gains"])]
         return table(["gains", *WALKED, "pushes survived"], lines)
 
@@ -205,18 +263,18 @@ def cheap_gains() -> str:
 
 
 def likeness() -> str:
-    def section(rows: list[dict[str, Any]]) -> str:
+    def section(rows: list[StudyRow]) -> str:
         return table(human_likeness.headings(rows), human_likeness.lines(rows, "**{}**".format))
 
     return study_section(human_likeness.STUDY, section)
 
 
-def study_table(name: str, headings: Sequence[str], line: Callable[[dict[str, Any]], list[str]]) -> str:
+def study_table(name: str, headings: Sequence[str], line: Callable[[StudyRow], list[str]]) -> str:
     """Table of the rows of a study, a line for each."""
     return study_section(name, lambda rows: table(headings, map(line, rows)))
 
 
-def study_section(name: str, section: Callable[[list[dict[str, Any]]], str]) -> str:
+def study_section(name: str, section: Callable[[list[StudyRow]], str]) -> str:
     """What `section` makes of the rows of a study, or that the study was not simulated yet."""
     if not (RESULTS / f"{name}.csv").exists():
         return f"Not simulated yet: `humanwalk study {name} -o runs/{name}`; `python benchmarks/pages.py runs/{name}`."
@@ -262,7 +320,7 @@ def kept_columns(study: Study, name: str) -> dict[str, type]:
     return {column: kind for column, kind in table_columns(study).items() if column in kept}
 
 
-def _walked(row: dict[str, Any]) -> list[str]:
+def _walked(row: StudyRow) -> list[str]:
     numbers = (("mean_speed_m_s", 1.0, ".3f"), ("path_deviation_m", 100.0, ".1f"), ("cost_of_transport", 1.0, ".2f"))
     return [
         _end(row),
@@ -270,11 +328,11 @@ def _walked(row: dict[str, Any]) -> list[str]:
     ]
 
 
-def _end(row: dict[str, Any]) -> str:
+def _end(row: StudyRow) -> str:
     return f"{row['end']} at {row['duration_s']:g} s"
 
 
-def _survival(rows: Sequence[dict[str, Any]]) -> tuple[str, str]:
+def _survival(rows: Sequence[StudyRow]) -> tuple[str, str]:
     found = Survival.of(np.array([row["survived"] for row in rows]))
     return f"**{found.survived} of {found.runs}**", f"{100 * found.low:.0f} to {100 * found.high:.0f} %"
 
@@ -290,6 +348,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_seeds,
         balance_invariance,
     ),
+    "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
     "howto/tuning.md": (cheap_gains,),
     "likeness.md": (likeness,),
     "claims.md": (thesis_step_height,),

@@ -42,6 +42,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("subjects_adults", 100),
         ("subjects_children", 40),
         ("subjects_loads", 40),
+        ("subjects_pushes", 40),
         ("terrain", 400),
         ("terrain_rough", 40),
         ("terrain_rough_blind", 40),
@@ -62,6 +63,15 @@ def test_paths_are_those_of_the_shipped_scenarios() -> None:
         assert study.scenario_at(point) == replace(shipped, description=study.scenario.description)
 
 
+def test_pushes_of_subjects_are_in_proportion_to_their_masses() -> None:
+    study = load_study("subjects_pushes")
+    scenarios = [study.scenario_at(point) for point in study.points]
+    for scenario in scenarios:
+        (push,) = scenario.pushes.given
+        assert push.impulse == pytest.approx(0.4 * scenario.subject.mass)
+    assert len({scenario.subject for scenario in scenarios}) == 5
+
+
 @pytest.mark.parametrize("name", ["subjects_adults", "subjects_children"])
 def test_subjects_walk_at_one_dimensionless_speed(name: str) -> None:
     study = load_study(name)
@@ -73,7 +83,7 @@ def test_subjects_walk_at_one_dimensionless_speed(name: str) -> None:
 
 
 def test_pushes_leave_time_to_fall() -> None:
-    for name in ("balance_pushes", "balance_pushes_60", "push_random"):
+    for name in ("balance_pushes", "balance_pushes_60", "push_random", "subjects_pushes"):
         study = load_study(name)
         for scenario in map(study.scenario_at, study.points):
             (push,) = scenario.pushes.given
