@@ -26,6 +26,7 @@ from humanwalk.study.study import load_study
 STUDY = "likeness"
 RESULTS = Path(__file__).parent / "results"
 CONTACT, FORWARD = "contact", "controller.balanced.command.points.0.forward"
+STYLE, NO_STYLE = "followed_curves", "none"
 
 COLUMNS = tuple(f"likeness.{name}" for name in likeness_columns())
 """Columns of the study's table that the goals need, besides the usual ones."""
@@ -35,31 +36,48 @@ Limits = tuple[float, float]
 
 
 @dataclass(frozen=True)
+class Target:
+    """What the values of a measure should be.
+
+    Attributes:
+        text: for the table.
+        limits: of each value of a row.
+    """
+
+    text: str
+    limits: Callable[[Row], Sequence[Limits]]
+
+
+@dataclass(frozen=True)
 class Goal:
     """A goal of human likeness.
 
     Attributes:
         name: what is measured.
-        without, with_style: the goal of a walk without a style, and of one that follows human curves, as text.
         values: of a row of the study.
-        limits: of each value, without a style.
+        without: target of a walk without a style.
+        with_style: target of a walk that follows human curves; None: the same.
         form: of a value.
         speeds: at which the goal counts; empty for all.
     """
 
     name: str
-    without: str
-    with_style: str
     values: Callable[[Row], Sequence[float]]
-    limits: Callable[[Row], Sequence[Limits]]
+    without: Target
+    with_style: Target | None = None
     form: str = ".2f"
     speeds: tuple[float, ...] = ()
+
+    def target(self, row: Row) -> Target:
+        """The target of a row."""
+        return self.without if row[STYLE] == NO_STYLE else self.with_style or self.without
 
     def reached(self, row: Row) -> bool | None:
         """Whether a row reaches the goal; None where it does not count."""
         if self.speeds and row[FORWARD] not in self.speeds:
             return None
-        return all(low <= value <= high for value, (low, high) in zip(self.values(row), self.limits(row), strict=True))
+        limits = self.target(row).limits(row)
+        return all(low <= value <= high for value, (low, high) in zip(self.values(row), limits, strict=True))
 
     def shown(self, row: Row) -> str:
         """The values of a row as text."""
@@ -87,16 +105,22 @@ def _mean(values: Callable[[Row], list[float]]) -> Callable[[Row], list[float]]:
     return lambda row: [float(np.mean(values(row)))]
 
 
-def _from(*lows: float) -> Callable[[Row], list[Limits]]:
-    return lambda row: [(low, np.inf) for low in lows]
+def _from(*lows: float) -> Target:
+    return Target(f">= {_texts(lows)}", lambda row: [(low, np.inf) for low in lows])
 
 
-def _to(*highs: float) -> Callable[[Row], list[Limits]]:
-    return lambda row: [(-np.inf, high) for high in highs]
+def _to(*highs: float) -> Target:
+    return Target(f"<= {_texts(highs)}", lambda row: [(-np.inf, high) for high in highs])
 
 
-def _between(*limits: Limits) -> Callable[[Row], list[Limits]]:
-    return lambda row: list(limits)
+def _between(*limits: Limits) -> Target:
+    low, high = zip(*limits, strict=True)
+    return Target(f"{_texts(low)} to {_texts(high)}", lambda row: list(limits))
+
+
+def _texts(values: Sequence[float]) -> str:
+    """The values; one, if all are the same."""
+    return " ".join(f"{value:g}" for value in (values if len(set(values)) > 1 else values[:1]))
 
 
 def _within_people(name: str, form: str) -> Goal:
@@ -109,7 +133,7 @@ def _within_people(name: str, form: str) -> Goal:
         return [(people.low, people.high)]
 
     heading = f"{name} [{kind.unit}]" if kind.unit else name
-    return Goal(heading, "human 1 SD", "human 1 SD", _values(kind.column), limits, form)
+    return Goal(heading, _values(kind.column), Target("human 1 SD", limits), form=form)
 
 
 PEAKS = _values("vertical_GRF_first_peak_BW", "vertical_GRF_second_peak_BW")
@@ -118,24 +142,24 @@ LOST = _values("contact_lost_after_heel_strike_s", scale=1e3)
 MOMENTS = "_moment"
 
 GOALS = (
-    Goal("angles within 1 SD, mean [%]", ">= 75", ">= 88", _mean(_percent("")), _from(75.0), ".0f"),
-    Goal("angles within 1 SD: hip, knee, ankle [%]", ">= 60", ">= 80", _percent(""), _from(60.0, 60.0, 60.0), ".0f"),
-    Goal("angles, correlation", ".97 .95 .90", ".98 .98 .95", _of_joints("", "correlation"), _from(0.97, 0.95, 0.9)),
-    Goal("moments within 1 SD, mean [%]", ">= 65", ">= 75", _mean(_percent(MOMENTS)), _from(65.0), ".0f"),
-    Goal("moments, correlation", ".9 .7 .95", ".9 .75 .95", _of_joints(MOMENTS, "correlation"), _from(0.9, 0.7, 0.95)),
-    Goal("moments, peak / human", "<= 1.4", "<= 1.3", _of_joints(MOMENTS, "peak_ratio"), _to(1.4, 1.4, 1.4)),
-    Goal("powers within 1 SD, mean [%]", ">= 60", ">= 65", _mean(_percent("_power")), _from(60.0), ".0f"),
-    Goal("vertical GRF, peaks [BW]", "1.05 to 1.25", "same", PEAKS, _between((1.05, 1.25), (1.05, 1.25))),
-    Goal("vertical GRF, dip [BW]", "0.7 to 0.9", "same", _values("vertical_GRF_dip_BW"), _between((0.7, 0.9))),
-    Goal("stances with two peaks [%]", "100", "same", TWO_PEAKS, _from(100.0), ".0f"),
-    Goal("contact lost after heel strike, at most [ms]", "0", "same", LOST, _to(0.0), ".0f"),
-    Goal("CoP backward, at most [cm]", "<= 1", "same", _values("CoP_backward_m", scale=100.0), _to(1.0), ".1f"),
+    Goal("angles within 1 SD, mean [%]", _mean(_percent("")), _from(75), _from(88), ".0f"),
+    Goal("angles within 1 SD: hip, knee, ankle [%]", _percent(""), _from(60, 60, 60), _from(80, 80, 80), ".0f"),
+    Goal("angles, correlation", _of_joints("", "correlation"), _from(0.97, 0.95, 0.9), _from(0.98, 0.98, 0.95)),
+    Goal("moments within 1 SD, mean [%]", _mean(_percent(MOMENTS)), _from(65), _from(75), ".0f"),
+    Goal("moments, correlation", _of_joints(MOMENTS, "correlation"), _from(0.9, 0.7, 0.95), _from(0.9, 0.75, 0.95)),
+    Goal("moments, peak / human", _of_joints(MOMENTS, "peak_ratio"), _to(1.4, 1.4, 1.4), _to(1.3, 1.3, 1.3)),
+    Goal("powers within 1 SD, mean [%]", _mean(_percent("_power")), _from(60), _from(65), ".0f"),
+    Goal("vertical GRF, peaks [BW]", PEAKS, _between((1.05, 1.25), (1.05, 1.25))),
+    Goal("vertical GRF, dip [BW]", _values("vertical_GRF_dip_BW"), _between((0.7, 0.9))),
+    Goal("stances with two peaks [%]", TWO_PEAKS, _from(100), form=".0f"),
+    Goal("contact lost after heel strike, at most [ms]", LOST, _to(0), form=".0f"),
+    Goal("CoP backward, at most [cm]", _values("CoP_backward_m", scale=100.0), _to(1), form=".1f"),
     _within_people("share of stance", ".3f"),
     _within_people("share of double support", ".3f"),
     _within_people("cadence", ".0f"),
     _within_people("step length", ".3f"),
     _within_people("step width", ".3f"),
-    Goal("cost of transport", "<= 0.42", "<= 0.45", _values("cost_of_transport"), _to(0.42), speeds=(1.2,)),
+    Goal("cost of transport", _values("cost_of_transport"), _to(0.42), _to(0.45), speeds=(1.2,)),
 )
 """The goals, in the order of the table."""
 
@@ -149,13 +173,18 @@ ROBUSTNESS = {
 """Shipped studies: what they are, and the goal."""
 
 
+def by_style(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """The rows of each style, by its name."""
+    return {style: [row for row in rows if row[STYLE] == style] for style in dict.fromkeys(row[STYLE] for row in rows)}
+
+
 def headings(rows: Sequence[Row]) -> list[str]:
-    """Of the table: the goals, then each run."""
-    return ["", "without style", "with style", *(f"{row[CONTACT]} {row[FORWARD]:g} m/s" for row in rows)]
+    """Of the table of the rows of one style: what is measured, the goal, each run."""
+    return ["", "goal", *(f"{row[CONTACT]} {row[FORWARD]:g} m/s" for row in rows)]
 
 
 def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]]:
-    """Lines of the table; `mark` marks values that reach the goal of a walk without a style.
+    """Lines of the table of the rows of one style; `mark` marks values that reach the goal.
 
     A run that fell, or whose strides cannot be compared, has no values.
     """
@@ -167,13 +196,12 @@ def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]
     for goal in GOALS:
         shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, reached[goal.name], strict=True))
         cells = (mark(text) if each else text for text, each in zip(shown, reached[goal.name], strict=True))
-        yield [goal.name, goal.without, goal.with_style, *cells]
+        yield [goal.name, goal.target(rows[0]).text, *cells]
     scores = [row["likeness.score"] for row in rows]
-    yield ["score [%]", "", "", *("-" if score is None else f"{100.0 * score:.0f}" for score in scores)]
+    yield ["score [%]", "", *("-" if score is None else f"{100.0 * score:.0f}" for score in scores)]
     by_run = ([each[run] for each in reached.values()] for run in range(len(rows)))
     yield [
         "goals reached",
-        "",
         "",
         *(f"{of_run.count(True)} of {len(GOALS) - of_run.count(None)}" for of_run in by_run),
     ]
@@ -199,10 +227,11 @@ def main(folder: Path) -> None:
         done = run_study(study, folder, client, lambda count, total, row: progress.update(task, completed=count))
     rows = done.to_pylist()
     console = Console(width=200 if not sys.stdout.isatty() else None)
-    shown = Table(*headings(rows), box=box.SIMPLE, title="✓: reaches the goal without style")
-    for line in lines(rows, "{} ✓".format):
-        shown.add_row(*map(escape, line))
-    console.print(shown)
+    for style, walks in by_style(rows).items():
+        shown = Table(*headings(walks), box=box.SIMPLE, title=f"style: {style}; ✓: reaches the goal")
+        for line in lines(walks, "{} ✓".format):
+            shown.add_row(*map(escape, line))
+        console.print(shown)
     kept = Table("robustness", "goal", "survived", box=box.SIMPLE)
     for row in robustness():
         kept.add_row(*row)

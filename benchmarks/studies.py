@@ -264,7 +264,10 @@ def cheap_gains() -> str:
 
 def likeness() -> str:
     def section(rows: list[StudyRow]) -> str:
-        return table(human_likeness.headings(rows), human_likeness.lines(rows, "**{}**".format))
+        return "\n\n".join(
+            f"Style: {style}\n\n{table(human_likeness.headings(walks), human_likeness.lines(walks, '**{}**'.format))}"
+            for style, walks in human_likeness.by_style(rows).items()
+        )
 
     return study_section(human_likeness.STUDY, section)
 

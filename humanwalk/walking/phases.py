@@ -72,7 +72,8 @@ class PhaseTransitions:
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
         if state.phase is Phase.STAND and is_moving:
-            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
+            timing = self._parameters.timing.at_speed(command.forward)
+            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, timing=timing)
         if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
             # The weight shift takes the place of the first double support.
             stepping = self._look_ahead(state._replace(elapsed=timing.double_support), command)
@@ -136,7 +137,7 @@ class PhaseTransitions:
             height=state.height,
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_moving else 0,
-            timing=self._parameters.timing,
+            timing=self._parameters.timing.at_speed(command.forward),
             ground=state.ground,
         )
         return self._look_ahead(landed, command, state.preview.ahead) if is_moving else landed

@@ -1,5 +1,6 @@
 """The clock of a step: double support, then single support; it runs faster for a foothold that is out of reach."""
 
+import math
 from dataclasses import dataclass, replace
 
 from humanwalk.quantity import quantity
@@ -10,7 +11,13 @@ class StepTiming:
     """Durations of the phases, and limits of the clock's rate."""
 
     step: float = quantity(0.53, "s", 0.3, 1.2)
-    """From touchdown to touchdown of the other foot."""
+    """From touchdown to touchdown of the other foot, without a walk ratio."""
+
+    walk_ratio: float = quantity(0.0, "m s", 0.0, 1.0)
+    """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
+
+    longest_step: float = quantity(0.65, "s", 0.3, 1.2)
+    """Longest duration for a walk ratio: slow walks have shorter steps instead."""
 
     double_support: float = quantity(0.09, "s", 0.04, 0.4)
     """First part of the step."""
@@ -32,6 +39,12 @@ class StepTiming:
 
     touchdown_force: float = quantity(60.0, "N", 0.0, 500.0)
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""
+
+    def at_speed(self, speed: float) -> "StepTiming":
+        """The timing at a forward speed [m/s]: with length v T, the walk ratio is v T^2."""
+        if self.walk_ratio == 0.0 or speed <= 0.0:
+            return self
+        return self.stretched(min(math.sqrt(self.walk_ratio / speed), self.longest_step) / self.step)
 
     def stretched(self, factor: float) -> "StepTiming":
         """The timing of a step that takes `factor` times as long."""

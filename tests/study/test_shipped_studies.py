@@ -38,7 +38,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("push_random", 100),
         ("thesis_step_height", 9),
         ("actuations", 3),
-        ("likeness", 6),
+        ("likeness", 12),
         ("subjects_adults", 100),
         ("subjects_children", 40),
         ("subjects_loads", 40),

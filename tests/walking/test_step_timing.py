@@ -1,5 +1,7 @@
 """The clock of a step: durations, landing by time or contact, and the rate for footholds out of reach."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,6 +18,28 @@ def at_progress(progress: float) -> float:
 
 def test_double_and_single_support_make_the_step() -> None:
     assert TIMING.double_support + TIMING.single_support == pytest.approx(TIMING.step)
+
+
+@given(st.floats(0.05, 2.5))
+def test_without_a_walk_ratio_the_step_takes_the_same_time_at_every_speed(speed: float) -> None:
+    assert TIMING.at_speed(speed) == TIMING
+
+
+@given(st.floats(0.05, 2.5))
+def test_a_walk_ratio_is_length_times_duration_up_to_the_longest_step(speed: float) -> None:
+    timing = replace(TIMING, walk_ratio=0.36).at_speed(speed)
+    if timing.step < TIMING.longest_step:
+        assert speed * timing.step**2 == pytest.approx(0.36)
+    else:
+        assert timing.step == pytest.approx(TIMING.longest_step)
+        assert speed * timing.step**2 <= 0.36 * (1.0 + 1e-12)
+    assert timing.double_support / timing.step == pytest.approx(TIMING.double_support / TIMING.step)
+
+
+@pytest.mark.parametrize("speed", [0.0, -0.5])
+def test_a_walk_ratio_says_nothing_about_standing_and_walking_backward(speed: float) -> None:
+    timing = replace(TIMING, walk_ratio=0.36)
+    assert timing.at_speed(speed) == timing
 
 
 @given(st.floats(-0.5, 1.5))
