@@ -110,8 +110,19 @@ def balance_invariance() -> str:
 
 
 def balance_seeds() -> str:
+    return _seeds("balance_seeds")
+
+
+def normative_seeds() -> str:
+    return _seeds("normative_seeds")
+
+
+def _seeds(name: str) -> str:
+    """Survival and ranges of the walks of each speed."""
+    study = load_study(name)
+
     def lines(rows: list[StudyRow]) -> Iterator[list[str]]:
-        for speed, walks in groupby(rows, key=lambda row: row[FORWARD]):
+        for speed, walks in groupby(rows, key=lambda row: study.value_at(row, FORWARD)):
             runs = list(walks)
             up = [row for row in runs if row["survived"]]
             yield [f"{speed:g} m/s", *_survival(runs)] + [
@@ -123,8 +134,8 @@ def balance_seeds() -> str:
                 )
             ]
 
-    headings = ["commanded", "last 30 s", "95 % interval", "speed m/s", "off the path cm", "cost of transport"]
-    return study_section("balance_seeds", lambda rows: table(headings, lines(rows)))
+    headings = ["commanded", "survived", "95 % interval", "speed m/s", "off the path cm", "cost of transport"]
+    return study_section(name, lambda rows: table(headings, lines(rows)))
 
 
 def balance_pushes() -> str:
@@ -353,7 +364,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
     "howto/tuning.md": (cheap_gains,),
-    "likeness.md": (likeness,),
+    "likeness.md": (likeness, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }

@@ -39,6 +39,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("thesis_step_height", 9),
         ("actuations", 3),
         ("likeness", 12),
+        ("normative_seeds", 20),
         ("subjects_adults", 100),
         ("subjects_children", 40),
         ("subjects_loads", 40),
@@ -70,6 +71,14 @@ def test_pushes_of_subjects_are_in_proportion_to_their_masses() -> None:
         (push,) = scenario.pushes.given
         assert push.impulse == pytest.approx(0.4 * scenario.subject.mass)
     assert len({scenario.subject for scenario in scenarios}) == 5
+
+
+def test_the_style_that_is_compared_with_people_is_that_of_the_scenario() -> None:
+    study, normative = load_study("likeness"), load_scenario("normative").controller
+    styled = [study.scenario_at(point).controller for point in study.points if point["followed_curves"] == "normative"]
+    assert len(styled) == 6
+    for controller in styled:
+        assert replace(controller, command=normative.command) == normative
 
 
 @pytest.mark.parametrize("name", ["subjects_adults", "subjects_children"])
