@@ -1,0 +1,41 @@
+"""Writes people's slow walk as a recording, joint angles and path of the pelvis: python tools/slow_trial.py slow.csv
+
+The curves are those of the slow group of Schwartz et al. (2008) at its own speed, with people's walk ratio.
+"""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from humanwalk.body import SIDES, human
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.motion.gait_curves import normative_curves, styled_joints
+
+DURATION, RATE = 8.0, 50.0
+"""Length [s] and rows per second."""
+
+WALK_RATIO = 0.36
+"""Length times duration of a step [m s]."""
+
+
+def write(path: Path) -> None:
+    """Write the recording."""
+    curves, hip_height = normative_curves(human().hip_height, PELVIC_TILT), human().hip_height
+    speed = float(curves.speeds[0])
+    stride = 2.0 * math.sqrt(WALK_RATIO / speed)
+    time = np.arange(0.0, DURATION, 1.0 / RATE)
+    zero = np.zeros(time.size)
+    columns = {"time": time, "pelvis_tx": speed * time, "pelvis_ty": zero + hip_height, "pelvis_tz": zero}
+    for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
+        angles = np.array([curves.at(side, t / stride + offset, speed).angle for t in time])
+        columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
+        columns |= {f"{joint}.angle_rad": zero for joint in LEGS[side].hip[1:]}
+    header = ",".join(columns)
+    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=header, comments="")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
