@@ -88,9 +88,9 @@ class AnkleProsthesis:
     Its ankle gives way in flexion and inversion, and its toes are flexible; it has no other joints.
     """
 
-    stiffness: float = quantity(300.0, "N m/rad", 50.0, 1500.0)
-    """Stiffness of the ankle in flexion; human ankles in stance have about 5 N m/rad per kg (Shamaei et al. 2013,
-    from memory)."""
+    stiffness: float = quantity(220.0, "N m/rad", 50.0, 1500.0)
+    """Stiffness of the ankle in flexion, found by simulation; human ankles in stance have about 5 N m/rad per kg
+    (Shamaei et al. 2013, from memory)."""
 
     damping: float = quantity(15.0, "N m s/rad", 0.0, 100.0)
     """Damping of the ankle in flexion (our choice)."""
@@ -98,9 +98,9 @@ class AnkleProsthesis:
     rest_angle: float = quantity(0.12, "rad", -0.3, 0.3)
     """Dorsiflexion at which the spring is relaxed: aligned for the bent knees of the balanced walker (our choice)."""
 
-    side_stiffness: float = quantity(150.0, "N m/rad", 20.0, 1500.0)
-    """Stiffness of the ankle in inversion: of multiaxial foot, socket and shoe together (our choice). A rigid one would
-    hold the hips in place in double support."""
+    side_stiffness: float = quantity(80.0, "N m/rad", 20.0, 1500.0)
+    """Stiffness of the ankle in inversion: of multiaxial foot, socket and shoe together, found by simulation. A rigid
+    one would hold the hips in place in double support."""
 
     toe_stiffness: float = quantity(30.0, "N m/rad", 5.0, 500.0)
     """Stiffness of the flexible toes (our choice)."""
