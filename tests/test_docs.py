@@ -107,7 +107,10 @@ def test_the_moving_picture_is_light_enough_for_a_first_screen() -> None:
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-@pytest.mark.parametrize("name", ["performance", "balance", "likeness", "contact", "claims", "actuation"])
+PAGES = ("performance", "balance", "likeness", "contact", "claims", "actuation", "howto/subjects", "howto/tuning")
+
+
+@pytest.mark.parametrize("name", PAGES)
 def test_the_tables_of_a_page_are_those_of_the_results(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     page, benchmarks = DOCS / f"{name}.md", DOCS.parent / "benchmarks"
     # A script's folder is on the path.
