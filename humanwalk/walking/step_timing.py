@@ -3,7 +3,10 @@
 import math
 from dataclasses import dataclass, replace
 
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
+
+MIN_WALK_RATIO = 0.05
+"""Smallest walk ratio [m s]: steps of 0.2 s at 1.2 m/s (our choice)."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,14 @@ class StepTiming:
 
     touchdown_force: float = quantity(60.0, "N", 0.0, 500.0)
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a walk ratio with steps too short to swing a leg."""
+        if 0.0 < self.walk_ratio < MIN_WALK_RATIO:
+            raise ParameterError(
+                f"walk_ratio: {self.walk_ratio:g} is too small; allowed: 0, or {MIN_WALK_RATIO:g} to 1 m s; people "
+                "have 0.33 to 0.40"
+            )
 
     def at_speed(self, speed: float) -> "StepTiming":
         """The timing at a forward speed [m/s]: with length v T, the walk ratio is v T^2."""

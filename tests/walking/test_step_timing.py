@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.quantity import ParameterError
 from humanwalk.walking.step_timing import StepTiming
 
 TIMING = StepTiming()
@@ -34,6 +35,11 @@ def test_a_walk_ratio_is_length_times_duration_up_to_the_longest_step(speed: flo
         assert timing.step == pytest.approx(TIMING.longest_step)
         assert speed * timing.step**2 <= 0.36 * (1.0 + 1e-12)
     assert timing.double_support / timing.step == pytest.approx(TIMING.double_support / TIMING.step)
+
+
+def test_a_walk_ratio_with_steps_too_short_for_a_swing_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"walk_ratio: 0\.01 is too small; allowed: 0, or 0\.05 to 1 m s"):
+        StepTiming(walk_ratio=0.01)
 
 
 @pytest.mark.parametrize("speed", [0.0, -0.5])
