@@ -15,22 +15,30 @@ from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.motion.gait_curves import normative_curves, styled_joints
 
 DURATION, RATE = 8.0, 50.0
-"""Length [s] and rows per second."""
+"""Length [s] and sampling rate [Hz]."""
 
 WALK_RATIO = 0.36
 """Length times duration of a step [m s]."""
 
 
-def write(path: Path) -> None:
-    """Write the recording."""
-    curves, hip_height = normative_curves(human().hip_height, PELVIC_TILT), human().hip_height
-    speed = float(curves.speeds[0])
-    stride = 2.0 * math.sqrt(WALK_RATIO / speed)
-    time = np.arange(0.0, DURATION, 1.0 / RATE)
+HIP_HEIGHT = human().hip_height
+CURVES = normative_curves(HIP_HEIGHT, PELVIC_TILT)
+
+
+def write(path: Path, speed: float, step: float, duration: float) -> None:
+    """Write people's walk as a table.
+
+    Args:
+        path: CSV file to write.
+        speed: Of the pelvis and of the curves [m/s].
+        step: Duration of a step [s].
+        duration: Of the recording [s].
+    """
+    time = np.arange(0.0, duration, 1.0 / RATE)
     zero = np.zeros(time.size)
-    columns = {"time": time, "pelvis_tx": speed * time, "pelvis_ty": zero + hip_height, "pelvis_tz": zero}
+    columns = {"time": time, "pelvis_tx": speed * time, "pelvis_ty": zero + HIP_HEIGHT, "pelvis_tz": zero}
     for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
-        angles = np.array([curves.at(side, t / stride + offset, speed).angle for t in time])
+        angles = np.array([CURVES.at(side, t / (2.0 * step) + offset, speed).angle for t in time])
         columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
         columns |= {f"{joint}.angle_rad": zero for joint in LEGS[side].hip[1:]}
     header = ",".join(columns)
@@ -38,4 +46,5 @@ def write(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    slow = float(CURVES.speeds[0])
+    write(Path(sys.argv[1]), slow, math.sqrt(WALK_RATIO / slow), DURATION)

@@ -1,33 +1,23 @@
 """A recording walked on its own feet: its speed and steps are commanded, its angles are a style."""
 
+import runpy
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from humanwalk.body import SIDES, human
-from humanwalk.body.limbs import LEGS
-from humanwalk.body.pelvic_plane import PELVIC_TILT
-from humanwalk.motion.gait_curves import normative_curves, styled_joints
 from humanwalk.run.folder import Run
 
 SPEED, STEP = 0.8, 0.6
+SLOW_TRIAL = Path(__file__).parents[2] / "tools" / "slow_trial.py"
 QUICK = ("--no-plots", "--no-replay")
 
 
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
     """Four seconds of people's curves with the path of the pelvis, as a table."""
-    time = np.arange(0.0, 4.0, 0.02)
-    curves = normative_curves(human().hip_height, PELVIC_TILT)
-    columns = {"time": time, "pelvis_tx": SPEED * time, "pelvis_ty": 0.0 * time + 0.93, "pelvis_tz": 0.0 * time}
-    for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
-        angles = np.array([curves.at(side, t / (2.0 * STEP) + offset, SPEED).angle for t in time])
-        columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
-        columns |= {f"{joint}.angle_rad": 0.0 * time for joint in (*LEGS[side].hip[1:],)}
     path = tmp_path / "trial.csv"
-    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
+    runpy.run_path(str(SLOW_TRIAL))["write"](path, SPEED, STEP, 4.0)
     return path
 
 
