@@ -81,6 +81,15 @@ def test_the_style_that_is_compared_with_people_is_that_of_the_scenario() -> Non
         assert replace(controller, command=normative.command) == normative
 
 
+def test_the_prosthesis_is_that_of_the_scenario() -> None:
+    study, shipped = load_study("impairments"), load_scenario("ankle_prosthesis")
+    walks = [study.scenario_at(point) for point in study.points if point["subject"] == "right ankle prosthesis"]
+    assert len(walks) == 10
+    for walk in walks:
+        assert walk.subject == shipped.subject
+        assert replace(walk.controller, command=shipped.controller.command) == shipped.controller
+
+
 @pytest.mark.parametrize("name", ["subjects_adults", "subjects_children"])
 def test_subjects_walk_at_one_dimensionless_speed(name: str) -> None:
     study = load_study(name)
