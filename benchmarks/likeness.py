@@ -198,8 +198,11 @@ def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]
         shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, reached[goal.name], strict=True))
         cells = (mark(text) if each else text for text, each in zip(shown, reached[goal.name], strict=True))
         yield [goal.name, goal.target(rows[0]).text, *cells]
-    scores = [row["likeness.score"] for row in rows]
-    yield ["score [%]", "", *("-" if score is None else f"{100.0 * score:.0f}" for score in scores)]
+    yield [
+        "score [%]",
+        "",
+        *(f"{100.0 * row['likeness.score']:.0f}" if found else "-" for row, found in zip(rows, compared, strict=True)),
+    ]
     by_run = ([each[run] for each in reached.values()] for run in range(len(rows)))
     yield [
         "goals reached",

@@ -7,11 +7,11 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import Any
 
 import likeness as human_likeness
 import numpy as np
 from actuation_figure import tracking_by_group
+from likeness import Row
 from matplotlib.figure import Figure
 
 from humanwalk.files import make_folder
@@ -64,9 +64,6 @@ PICTURES = {
 DRAWN: dict[str, Callable[[Results], Figure]] = {"actuations": tracking_by_group}
 """Pictures of their own."""
 
-StudyRow = dict[str, Any]
-"""Values of a run by column."""
-
 FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
 WALKED = ("end", "speed m/s", "off the path cm", "cost of transport")
@@ -102,7 +99,7 @@ def balance_bodies() -> str:
 
 
 def balance_invariance() -> str:
-    def line(row: StudyRow) -> list[str]:
+    def line(row: Row) -> list[str]:
         step = (row["gait.step_time_s.right"] + row["gait.step_time_s.left"]) / 2.0
         return [row["settings"], *_walked(row), str(row["steps"]), f"{step:.3f}"]
 
@@ -121,7 +118,7 @@ def _seeds(name: str) -> str:
     """Survival and ranges of the walks of each speed."""
     study = load_study(name)
 
-    def lines(rows: list[StudyRow]) -> Iterator[list[str]]:
+    def lines(rows: list[Row]) -> Iterator[list[str]]:
         for speed, walks in groupby(rows, key=lambda row: study.value_at(row, FORWARD)):
             runs = list(walks)
             up = [row for row in runs if row["survived"]]
@@ -146,23 +143,21 @@ def balance_pushes_60() -> str:
     return study_section("balance_pushes_60", _pushes_by_time)
 
 
-def _pushes_by_time(rows: list[StudyRow]) -> str:
-    def end(row: StudyRow) -> str:
+def _pushes_by_time(rows: list[Row]) -> str:
+    def end(row: Row) -> str:
         return "up" if row["survived"] else f"{row['end']} after {row['duration_s'] - row[PUSH_TIME]:.1f} s"
 
     return _pushes(rows, "push at", lambda row: f"{row[PUSH_TIME]:.2f} s", end)
 
 
 def subjects_pushes() -> str:
-    def section(rows: list[StudyRow]) -> str:
+    def section(rows: list[Row]) -> str:
         return _pushes(rows, "body", lambda row: row["body"], lambda row: "up" if row["survived"] else row["end"])
 
     return study_section("subjects_pushes", section)
 
 
-def _pushes(
-    rows: list[StudyRow], heading: str, group: Callable[[StudyRow], str], end: Callable[[StudyRow], str]
-) -> str:
+def _pushes(rows: list[Row], heading: str, group: Callable[[Row], str], end: Callable[[Row], str]) -> str:
     """How each push ended, a line for each group of rows and a column for each direction."""
     ends = {(group(row), row[PUSH_DIRECTION]): end(row) for row in rows}
     names, directions = dict.fromkeys(map(group, rows)), sorted({row[PUSH_DIRECTION] for row in rows})
@@ -173,7 +168,7 @@ def _pushes(
 
 
 def push_random() -> str:
-    def section(rows: list[StudyRow]) -> str:
+    def section(rows: list[Row]) -> str:
         def line(level: Level) -> list[str]:
             inside = [rows[index] for index in level.rows]
             ends = [math.degrees(choose(row[PUSH_DIRECTION] for row in inside)) for choose in (min, max)]
@@ -206,11 +201,11 @@ def impairments() -> str:
     return _subjects("impairments", lambda row: row["subject"])
 
 
-def _subjects(name: str, group: Callable[[StudyRow], str]) -> str:
-    """Survival, speed and cost of the groups of a study's subjects."""
+def _subjects(name: str, group: Callable[[Row], str]) -> str:
+    """Table of survival, speed and cost of transport, a line for each group of subjects."""
     study = load_study(name)
 
-    def line(label: str, runs: list[StudyRow]) -> list[str]:
+    def line(label: str, runs: list[Row]) -> list[str]:
         up = [row for row in runs if row["survived"]]
         if not up:
             return [label, *_survival(runs), "-", "-"]
@@ -224,7 +219,7 @@ def _subjects(name: str, group: Callable[[StudyRow], str]) -> str:
             f"{min(costs):.2f} to {max(costs):.2f}",
         ]
 
-    def section(rows: list[StudyRow]) -> str:
+    def section(rows: list[Row]) -> str:
         groups = dict.fromkeys(map(group, rows))
         headings = ["subject", "survived", "95 % interval", "speed deviates by", "cost of transport"]
         return table(headings, [line(label, [row for row in rows if group(row) == label]) for label in groups])
@@ -233,7 +228,7 @@ def _subjects(name: str, group: Callable[[StudyRow], str]) -> str:
 
 
 def thesis_step_height() -> str:
-    def line(row: StudyRow) -> list[str]:
+    def line(row: Row) -> list[str]:
         lift = 50.0 * (row["foot_lift_m.right"] + row["foot_lift_m.left"])
         support = [f"{row['support_force_rms_N']:.0f}", f"{row['support_torque_rms_N_m']:.0f}"]
         height = row["controller.thesis.gait.path.step_height"]
@@ -244,7 +239,7 @@ def thesis_step_height() -> str:
 
 
 def actuations() -> str:
-    def line(row: StudyRow) -> list[str]:
+    def line(row: Row) -> list[str]:
         return [
             f"`{row['actuation']}`",
             f"{1e3 * row['tracking_error_rms_rad']:.2f}",
@@ -262,11 +257,11 @@ def actuations() -> str:
 
 
 def cheap_gains() -> str:
-    def line(gains: str, runs: list[StudyRow]) -> list[str]:
+    def line(gains: str, runs: list[Row]) -> list[str]:
         (free,) = (row for row in runs if row["push"] == "none")
         return [gains, *_walked(free), _survival([row for row in runs if row is not free])[0]]
 
-    def section(rows: list[StudyRow]) -> str:
+    def section(rows: list[Row]) -> str:
         lines = [line(gains, list(runs)) for gains, runs in groupby(rows, key=lambda row: row["gains"])]
         return table(["gains", *WALKED, "pushes survived"], lines)
 
@@ -274,7 +269,7 @@ def cheap_gains() -> str:
 
 
 def likeness() -> str:
-    def section(rows: list[StudyRow]) -> str:
+    def section(rows: list[Row]) -> str:
         return "\n\n".join(
             f"Style: {style}\n\n{table(human_likeness.headings(walks), human_likeness.lines(walks, '**{}**'.format))}"
             for style, walks in human_likeness.by_style(rows).items()
@@ -283,12 +278,12 @@ def likeness() -> str:
     return study_section(human_likeness.STUDY, section)
 
 
-def study_table(name: str, headings: Sequence[str], line: Callable[[StudyRow], list[str]]) -> str:
+def study_table(name: str, headings: Sequence[str], line: Callable[[Row], list[str]]) -> str:
     """Table of the rows of a study, a line for each."""
     return study_section(name, lambda rows: table(headings, map(line, rows)))
 
 
-def study_section(name: str, section: Callable[[list[StudyRow]], str]) -> str:
+def study_section(name: str, section: Callable[[list[Row]], str]) -> str:
     """What `section` makes of the rows of a study, or that the study was not simulated yet."""
     if not (RESULTS / f"{name}.csv").exists():
         return f"Not simulated yet: `humanwalk study {name} -o runs/{name}`; `python benchmarks/pages.py runs/{name}`."
@@ -334,7 +329,7 @@ def kept_columns(study: Study, name: str) -> dict[str, type]:
     return {column: kind for column, kind in table_columns(study).items() if column in kept}
 
 
-def _walked(row: StudyRow) -> list[str]:
+def _walked(row: Row) -> list[str]:
     numbers = (("mean_speed_m_s", 1.0, ".3f"), ("path_deviation_m", 100.0, ".1f"), ("cost_of_transport", 1.0, ".2f"))
     return [
         _end(row),
@@ -342,11 +337,11 @@ def _walked(row: StudyRow) -> list[str]:
     ]
 
 
-def _end(row: StudyRow) -> str:
+def _end(row: Row) -> str:
     return f"{row['end']} at {row['duration_s']:g} s"
 
 
-def _survival(rows: Sequence[StudyRow]) -> tuple[str, str]:
+def _survival(rows: Sequence[Row]) -> tuple[str, str]:
     found = Survival.of(np.array([row["survived"] for row in rows]))
     return f"**{found.survived} of {found.runs}**", f"{100 * found.low:.0f} to {100 * found.high:.0f} %"
 

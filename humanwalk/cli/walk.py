@@ -154,8 +154,8 @@ def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) 
 
     Args:
         recording: File of joint angles with the path of the pelvis.
-        mapping: Which column is which joint.
-        subject: Who walks it.
+        mapping: File that assigns columns to joints; None: by name.
+        subject: Body that the recording is applied to.
 
     Raises:
         ParameterError: The recording cannot be read, or is not a walk.
