@@ -28,7 +28,7 @@ class StepPlacement:
     min_width: float = quantity(0.09, "m", 0.0, 0.3)
     """Minimum sideways distance of a foothold beside the stance foot, where the legs would touch."""
 
-    max_crossover: float = quantity(0.1, "m", -0.3, 0.3)
+    max_crossover: float = quantity(0.2, "m", -0.3, 0.3)
     """Largest distance of a foothold across the stance foot: one leg in front of the other."""
 
     max_width: float = quantity(0.85, "m", 0.2, 1.0)
@@ -77,7 +77,7 @@ class StepPlacement:
         return max(self.min_width - max(abs(x) - self.abreast, 0.0), -self.max_crossover)
 
     def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
-        """Waypoint beside the stance foot for a swinging foot that would hit it.
+        """Waypoint beside the stance foot for a swinging foot whose straight way would hit it.
 
         Args:
             foot: Position of the swinging foot.
@@ -87,10 +87,12 @@ class StepPlacement:
         Returns:
             The waypoint, and its fraction of the path to the foothold; None if the path is clear.
         """
-        outward = OUTWARD[stance]
-        if outward * foot.imag >= self.min_width or foot.real * foothold.real >= 0.0:
+        if foot.real * foothold.real >= 0.0:
             return None
-        return 1j * outward * self.passing_distance, foot.real / (foot.real - foothold.real)
+        fraction = foot.real / (foot.real - foothold.real)
+        beside = foot + fraction * (foothold - foot)
+        outward = OUTWARD[stance]
+        return None if outward * beside.imag >= self.min_width else (1j * outward * self.passing_distance, fraction)
 
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].

@@ -1,7 +1,8 @@
 """Footholds stay within reach and clear of the stance leg; those excess call for a faster clock."""
 
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from humanwalk.sides import Side
@@ -81,16 +82,17 @@ def test_the_foothold_gain_tends_to_one_without_double_support() -> None:
     assert foothold_gain(3.2, 0.2) > foothold_gain(3.2, 0.1) > 1.0
 
 
-@given(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), sides)
-def test_only_a_foot_that_would_hit_the_stance_foot_has_a_waypoint(
-    x: float, width: float, goal: float, stance: Side
+@given(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), st.floats(-0.2, 0.85), sides)
+def test_only_a_foot_whose_straight_way_would_hit_the_stance_foot_has_a_waypoint(
+    x: float, width: float, goal: float, goal_width: float, stance: Side
 ) -> None:
     outward = OUTWARD[stance]
-    waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * 0.16), stance)
-    if width >= PLACEMENT.min_width or x * goal >= 0.0:
-        assert waypoint is None
-    else:
-        point, fraction = waypoint  # type: ignore[misc]
+    waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * goal_width), stance)
+    beside = np.interp(0.0, *np.transpose(sorted([(x, width), (goal, goal_width)])))
+    assume(abs(beside - PLACEMENT.min_width) > 1e-9)
+    assert (waypoint is not None) == (x * goal < 0.0 and beside < PLACEMENT.min_width)
+    if waypoint is not None:
+        point, fraction = waypoint
         assert point == complex(0.0, outward * PLACEMENT.passing_distance)
         assert x + fraction * (goal - x) == pytest.approx(0.0, abs=1e-9)
 
