@@ -21,14 +21,18 @@ from humanwalk.walking.walking_reference import FootTask, WalkingReference
 EDGES = 4
 """Number of edges of a friction pyramid."""
 
+MAX_LEAN = 0.45
+"""Largest slope of the cheapest force per friction coefficient (our choice); with 0.5 an edge would have no length."""
+
 
 @dataclass(frozen=True)
 class Soles:
-    """The k contact points under both feet, followed by the middle of the heel of each foot in the order of SIDES.
+    """The k contact points under both feet, followed by the middles of the heel and of the toes of each foot, all heels
+    first, in the order of SIDES.
 
     Attributes:
-        body: index of each point's body among those of `Dynamics`, (k + 2,).
-        p_BP: in that body's frame [m], (k + 2, 3).
+        body: index of each point's body among those of `Dynamics`, (k + 4,).
+        p_BP: in that body's frame [m], (k + 4, 3).
         side: index of the foot of each contact point in SIDES, (k,).
         is_heel: whether a contact point is under the hindfoot, (k,).
     """
@@ -49,11 +53,12 @@ class Soles:
         points = np.array([(*sphere.center[:2], sphere.center[2] - sphere.radius) for sphere in spheres])
         under = np.array([sphere.body for sphere in spheres])
         hindfeet = [LEGS[side].hindfoot for side in SIDES]
-        heels = [points[under == hindfoot].mean(axis=0) for hindfoot in hindfeet]
+        ends = [*hindfeet, *(LEGS[side].toe_segment for side in SIDES)]
+        middles = [points[under == end].mean(axis=0) for end in ends]
         feet = [LEGS[side].foot_bodies for side in SIDES]
         return Soles(
-            body=np.array([bodies.index(name) for name in (*under, *hindfeet)]),
-            p_BP=np.concatenate((points, heels)),
+            body=np.array([bodies.index(name) for name in (*under, *ends)]),
+            p_BP=np.concatenate((points, middles)),
             side=np.array([[name in foot for foot in feet].index(True) for name in under]),
             is_heel=np.isin(under, hindfeet),
         )
@@ -73,10 +78,10 @@ class SolesOnGround(NamedTuple):
 
     Attributes:
         soles: the points.
-        r_W: from the origin of each point's body to the point, in W [m], (k + 2, 3).
-        height: above the ground along its normal [m], (k + 2,).
-        R_SW: axes of the ground below each point, (k + 2, 3, 3).
-        friction: Coulomb coefficient of the ground below each point, (k + 2,).
+        r_W: from the origin of each point's body to the point, in W [m], (k + 4, 3).
+        height: above the ground along its normal [m], (k + 4,).
+        R_SW: axes of the ground below each point, (k + 4, 3, 3).
+        friction: Coulomb coefficient of the ground below each point, (k + 4,).
     """
 
     soles: Soles
@@ -87,8 +92,13 @@ class SolesOnGround(NamedTuple):
 
     def heel(self, side: Side) -> tuple[Array, float]:
         """Middle of a heel: position in the hindfoot's frame [m], height above the ground [m]."""
-        i = SIDES.index(side) - len(SIDES)
+        i = SIDES.index(side) - 2 * len(SIDES)
         return self.soles.p_BP[i], float(self.height[i])
+
+    def toes(self, side: Side) -> Array:
+        """Middle of the contact points of the toes, in the frame of the toes [m]."""
+        p_BP: Array = self.soles.p_BP[SIDES.index(side) - len(SIDES)]
+        return p_BP
 
     def contacts(self, body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Contacts:
         """The points that can carry a force.
@@ -103,11 +113,15 @@ class SolesOnGround(NamedTuple):
         load = np.array([foot.load for foot in feet])[soles.side]
         load[soles.is_heel & np.array([foot.task is FootTask.HEEL_OFF for foot in feet])[soles.side]] = 0.0
         (points,) = np.nonzero((self.height[: load.size] < p.contact_height) & (load > 0.0))
-        J = body.J[soles.body[points]]
+        under = soles.body[points]
+        J = body.J[under]
         # The velocity of a point is v + w x r.
         J_points = J[:, 3:] - cross_matrix(self.r_W[points]) @ J[:, :3]
         mu = np.minimum(p.friction, p.friction_use * self.friction[points])
-        edges_W = friction_edges(mu, p.force_unit) @ self.R_SW[points]
+        R_SW = self.R_SW[points]
+        to_com_S = np.matvec(R_SW, body.com.position - body.X_WB[under, :, 3] - self.r_W[points])
+        slope = p.force_direction * to_com_S[:, :2] / to_com_S[:, 2:]
+        edges_W = leaning_edges(mu, p.force_unit, slope) @ R_SW
         J_edges = edges_W @ J_points
         return Contacts(points, load[points], edges_W, J_edges.reshape(-1, J.shape[-1]))
 
@@ -121,6 +135,18 @@ def friction_edges(mu: Array, unit: float) -> Array:
     edges[:, 0, 0] = edges[:, 2, 1] = mu
     edges[:, 1, 0] = edges[:, 3, 1] = -mu
     edges *= unit
+    return edges
+
+
+def leaning_edges(mu: Array, unit: float, slope: Array) -> Array:
+    """`friction_edges` of such lengths that the cheapest force leans by a slope, (n, 2).
+
+    An edge with the coefficient s costs s^2. Of the cheapest force with a given third component, each edge then has a
+    share in proportion to the square of its length. Slopes are limited to MAX_LEAN of the friction coefficient.
+    """
+    lean = 2.0 * np.clip(slope / mu[:, None], -MAX_LEAN, MAX_LEAN)
+    squares = 1.0 + np.stack((lean, -lean), axis=2).reshape(-1, EDGES)
+    edges: Array = np.sqrt(squares)[:, :, None] * friction_edges(mu, unit)
     return edges
 
 

@@ -13,7 +13,7 @@ from humanwalk.control.body_dynamics import Dynamics, FrameMotion
 from humanwalk.control.whole_body_contacts import SolesOnGround
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
 from humanwalk.numerics import Array
-from humanwalk.numerics.rotation import cross_matrix, rotation_vector, yaw_pitch
+from humanwalk.numerics.rotation import cross_matrix, rotation_vector, yaw_pitch, yaw_roll
 from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 
 REST = np.zeros(3)
@@ -42,6 +42,7 @@ class Foot(NamedTuple):
     Attributes:
         hindfoot, toes: frames of its first and last body.
         p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
+        p_TToes: middle of the contact points of the toes in their frame [m], (3,).
         heel_height: of that point above the terrain [m].
         is_steered: whether the ankle has muscles that turn the foot.
     """
@@ -49,6 +50,7 @@ class Foot(NamedTuple):
     hindfoot: FrameMotion
     toes: FrameMotion
     p_BHeel: Array
+    p_TToes: Array
     heel_height: float
     is_steered: bool
 
@@ -86,13 +88,14 @@ def tasks(
     found = [
         *_center_of_mass(body, reference, p),
         _center_of_pressure(body, reference, p),
-        _rotation(body.frame(PELVIS), yaw_pitch(reference.pelvis_yaw, 0.0), p.pelvis, p),
+        _rotation(body.frame(PELVIS), yaw_roll(reference.pelvis_yaw, reference.pelvis_roll), p.pelvis, p),
         _rotation(body.frame(CHEST), yaw_pitch(reference.chest_yaw, 0.0), p.chest, p),
     ]
     for side in SIDES:
         leg, foot = LEGS[side], reference.foot(side)
         is_steered = side not in passive_ankles
-        state = Foot(body.frame(leg.hindfoot), body.frame(leg.toe_segment), *soles.heel(side), is_steered)
+        frames, (heel, height) = (body.frame(leg.hindfoot), body.frame(leg.toe_segment)), soles.heel(side)
+        state = Foot(*frames, heel, soles.toes(side), height, is_steered)
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
     found.extend(more)
     J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
@@ -165,14 +168,26 @@ def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -
 
 
 def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
-    """The toes stand, and the hindfoot pitches about its own axis."""
-    yield from _no_motion(foot.toes, REST, p)
+    """The toes stand, or roll over their tips, and the hindfoot pitches about its own axis."""
     angle, rate, acceleration = reference.pitch
     R_WG = reference.R_WS @ yaw_pitch(reference.yaw, angle)
     axis = R_WG[:, 1]
+    extension, extending = reference.toes
+    if angle > extension:
+        yield from _rolling_toes(foot, (rate - extending) * axis, p)
+    else:
+        yield from _no_motion(foot.toes, REST, p)
     whole = _rotation(foot.hindfoot, R_WG, p.heel_off, p, rate * axis, acceleration * axis)
     if foot.is_steered:
         yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
+
+
+def _rolling_toes(foot: Foot, velocity: Array, p: WholeBodyParameters) -> Iterator[Task]:
+    """The contact points of the toes stand, and the toes turn with an angular velocity in W."""
+    tips = foot.toes.point(foot.p_TToes)
+    yield Task(tips.J, -p.stance.damping * tips.velocity - tips.bias, p.stance.weight)
+    turning = p.stance.damping * (velocity - foot.toes.V_WB[:3]) - foot.toes.bias[:3]
+    yield Task(foot.toes.J[:3], turning, p.rotation_radius**2 * p.stance.weight)
 
 
 def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:

@@ -36,6 +36,12 @@ def yaw_pitch(yaw: float, pitch: float) -> Array:
     return np.array(((c * cp, -s, c * sp), (s * cp, c, s * sp), (-sp, 0.0, cp)))
 
 
+def yaw_roll(yaw: float, roll: float) -> Array:
+    """Rz(yaw) Rx(roll), shape (3, 3)."""
+    c, s, cr, sr = math.cos(yaw), math.sin(yaw), math.cos(roll), math.sin(roll)
+    return np.array(((c, -s * cr, s * sr), (s, c * cr, -c * sr), (0.0, sr, cr)))
+
+
 def cross_matrix(a: Array) -> Array:
     """The matrix of the cross product a x; shape (..., 3, 3) for (..., 3)."""
     matrix: Array = (a @ _LEVI_CIVITA).reshape(*a.shape, 3)

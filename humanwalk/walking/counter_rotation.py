@@ -1,6 +1,7 @@
-"""Rotation of pelvis, chest and arms with and against the legs."""
+"""Rotation of pelvis, chest and arms with and against the legs, and the drop of the pelvis."""
 
 import cmath
+import math
 from dataclasses import dataclass
 
 from humanwalk.quantity import quantity
@@ -14,6 +15,12 @@ class CounterRotation:
     pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
     """Yaw of the pelvis, with the leading leg."""
 
+    drop: float = quantity(0.0, "rad s/m", 0.0, 0.3)
+    """Largest drop of the pelvis toward the swinging leg per forward speed; people have 0.06 (Schwartz et al. 2008)."""
+
+    drop_share: float = quantity(0.9, "", 0.1, 1.0)
+    """Share of the step, from touchdown on, in which the pelvis is lower there."""
+
     chest: float = quantity(0.15, "rad/m", 0.0, 1.0)
     """Yaw of the chest, against it."""
 
@@ -22,6 +29,11 @@ class CounterRotation:
 
     arms: float = quantity(0.6, "rad/m", 0.0, 2.0)
     """Flexion of the shoulder opposite to the leading leg."""
+
+    def drop_at(self, progress: float, speed: float) -> float:
+        """Drop of the pelvis toward the swinging leg [rad] at a share of the step and a forward speed [m/s]."""
+        bump = 0.5 - 0.5 * math.cos(2.0 * math.pi * min(progress / self.drop_share, 1.0))
+        return self.drop * max(speed, 0.0) * bump
 
 
 def foot_lead(body: BodyState, heading: float) -> tuple[float, float]:

@@ -82,8 +82,9 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
     if not rockers.heel_rises(speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
     lead = heel_off_lead(state.old_foot, state.stance_foot, parameters)
+    since = lead + state.elapsed - (1.0 - rockers.catch_up) * state.early
     duration = lead + timing.double_support
-    return rockers.over_ball(lead + state.elapsed, duration, load, state.old_heading, R_WS, speed)
+    return rockers.over_ball(max(since, 0.0), duration, load, state.old_heading, R_WS, speed)
 
 
 def swinging_foot(

@@ -22,7 +22,7 @@ class FootRockers:
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.0, "rad", 0.0, 1.2)
+    pitch: float = quantity(1.0, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster; proportional to the speed below."""
 
     full_pitch_speed: float = quantity(1.0, "m/s", 0.1, 5.0)
@@ -30,6 +30,14 @@ class FootRockers:
 
     late_rise: float = quantity(0.2, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
+
+    toes: float = quantity(1.2, "rad", 0.0, 1.2)
+    """Largest extension of the toes: a foot that pitches further rolls over their tips. The default is no limit
+    (docs/likeness.md, "Mechanisms that are off by default")."""
+
+    catch_up: float = quantity(1.0, "", 0.0, 1.0)
+    """Share of the time by which the other foot lands early that the pitch makes up for at once; with 0 it goes on
+    without a jump."""
 
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)
     """Forward speed below which the feet leave the ground flat."""
@@ -61,4 +69,5 @@ class FootRockers:
         rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration
         acceleration = final * (2.0 * (1.0 - late) + 6.0 * late * s) / duration**2
         pitch = ScalarMotion(value, rate, acceleration)
-        return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=pitch[:2])
+        toes = pitch[:2] if value <= self.toes else (self.toes, 0.0)
+        return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes)

@@ -137,6 +137,7 @@ class PhaseTransitions:
             height=state.height,
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_moving else 0,
+            early=max(state.timing.step - state.elapsed, 0.0),
             timing=self._parameters.timing.at_speed(command.forward),
             ground=state.ground,
         )

@@ -63,6 +63,7 @@ class PlannerState(NamedTuple):
         turn: Turn rate of the path beside the stance foot [rad/s].
         path_correction: Velocity of this step in addition to the commanded one [m/s].
         steps: Number of steps since standing.
+        early: Time by which the last step was shorter than planned [s].
         swing: The swinging foot in single support, else None.
         timing: Durations of this step.
         preview: The next footholds.
@@ -84,6 +85,7 @@ class PlannerState(NamedTuple):
     turn: float = 0.0
     path_correction: complex = 0.0
     steps: int = 0
+    early: float = 0.0
     swing: Swing | None = None
     timing: StepTiming = StepTiming()
     preview: Preview = Preview()

@@ -17,7 +17,7 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
-from humanwalk.walking.foot_placement import foothold_gain
+from humanwalk.walking.foot_placement import OUTWARD, foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
@@ -274,6 +274,7 @@ class StepPlanner:
         # The trunk turns at the rate of the path, the headings of the steps by one step's turn at touchdown.
         turned = state.turn * (state.elapsed - 0.5 * timing.step) if state.is_stepping else 0.0
         facing = state.heading + turned
+        drop = rotation.drop_at(state.elapsed / timing.step, speed) if state.is_stepping else 0.0
         return WalkingReference(
             phase=state.phase,
             phase_time=state.elapsed,
@@ -286,6 +287,7 @@ class StepPlanner:
             right=feet["Right"],
             left=feet["Left"],
             pelvis_yaw=facing - rotation.pelvis * lead,
+            pelvis_roll=-OUTWARD[state.stance] * drop,
             chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((arm, arm_rate), (-arm, -arm_rate)),
             head_yaw=(-rotation.head * lead, -rotation.head * lead_rate),

@@ -177,6 +177,7 @@ class WalkingReference:
         ground_height: Ground under the zero-moment point in W [m].
         right, left: The feet.
         pelvis_yaw, chest_yaw: [rad].
+        pelvis_roll: Left side up positive [rad].
         shoulder_flexion: Angle and rate, of the right and of the left shoulder [rad, rad/s].
         head_yaw: Angle and rate of the head relative to the chest [rad, rad/s].
         foothold: Where the ankle of the swinging foot will be [m].
@@ -205,6 +206,7 @@ class WalkingReference:
     stance: Side = "Left"
     speed: float = 0.0
     ground: Ground = Plane()
+    pelvis_roll: float = 0.0
 
     def __deepcopy__(self, memo: object) -> Self:
         """Return itself: Drake copies abstract values often, and the reference is immutable."""

@@ -78,6 +78,13 @@ def reference_for(
     )
 
 
+def body_height(body: Dynamics, skeleton: Skeleton) -> list[float]:
+    """Heights of the lowest points of all contact spheres [m]."""
+    spheres = contact_spheres(skeleton)
+    lowest = [np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius)) for sphere in spheres]
+    return [float(body.frame(s.body).point(p).position[2]) for s, p in zip(spheres, lowest, strict=True)]
+
+
 def rest(qp: WholeBodyQp) -> Posture:
     return Posture(np.zeros(len(qp.names)), np.zeros(len(qp.names)))
 
@@ -291,6 +298,49 @@ def test_after_heel_strike_a_foot_turns_until_it_is_parallel_to_the_slope(
     unturned = body.frame(LEGS["Right"].hindfoot).R_WB @ parallel.frame(LEGS["Right"].hindfoot).R_WB.T
     assert np.arcsin(unturned[0, 2]) == pytest.approx(pitch, abs=1e-9)
     assert turning * pitch < -1.0
+
+
+def test_toes_that_extend_no_further_roll_about_their_contact_points(
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton
+) -> None:
+    body, pitch = body_at(dynamics), ScalarMotion(0.0, 5.0, 0.0)
+    flat, rolling = (
+        FootReference(FootTask.HEEL_OFF, 1.0, 0.0, pitch=pitch, toes=toes) for toes in ((0.0, 5.0), (-1e-6, 0.0))
+    )
+    toes = body.frame(LEGS["Right"].toe_segment)
+    sole = next(s for s in contact_spheres(skeleton) if s.body == LEGS["Right"].toe_segment)
+    turning, standing = [], []
+    for reference in (flat, rolling):
+        solution = qp.solve(body, reference_for(body, right=reference), rest(qp))
+        turning.append((toes.J @ solution.acceleration)[1])
+        points = toes.point(np.array((sole.center[0], 0.0, sole.center[2] - sole.radius)))
+        standing.append(np.abs(points.J @ solution.acceleration + points.bias).max())
+    assert abs(turning[0]) < 10.0
+    assert turning[1] == pytest.approx(PARAMETERS.stance.damping * pitch.rate, rel=0.05)
+    assert max(standing) < 1.0
+
+
+def test_forces_that_lean_toward_the_center_of_mass_push_from_behind_and_brake_ahead(
+    dynamics: BodyDynamics, skeleton: Skeleton
+) -> None:
+    """In double support, where the tasks leave the forces along the line between the feet free."""
+    joints, apart = dynamics.joints, 0.25
+    q = body_at(dynamics).q.copy()
+    for leg, sign in ((LEGS["Right"], 1.0), (LEGS["Left"], -1.0)):
+        q[joints.q[joints.names.index(leg.hip_flexion)]] += sign * apart
+        q[joints.q[joints.names.index(leg.ankle)]] -= sign * apart
+    lowest = min(body_height(dynamics.at(np.concatenate((q, np.zeros(48)))), skeleton))
+    q[6] -= lowest + 0.0003
+    body = dynamics.at(np.concatenate((q, np.zeros(48))))
+    upright, leaning = (
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, force_direction=share))
+        for share in (0.0, 1.0)
+    )
+    before, after = (program.solve(body, reference_for(body), rest(program)).forces for program in (upright, leaning))
+    assert after.sum(axis=0) == pytest.approx(before.sum(axis=0), abs=1.0)
+    ahead, behind = after[:6, 0].sum(), after[6:, 0].sum()
+    assert ahead < before[:6, 0].sum() - 20.0
+    assert behind > before[6:, 0].sum() + 20.0
 
 
 def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:

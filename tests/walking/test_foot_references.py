@@ -1,5 +1,7 @@
 """References of the feet: heel strike, flat, heel-off and swing in their order, without jumps."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -53,6 +55,15 @@ def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot() -> None:
     before = stance_foot(state_at(TIMING.step - 1e-9), swing_to(NEXT), WALK, PARAMETERS)
     after = foot_behind(state_at(0.0), WALK, PARAMETERS)
     assert after.pitch == pytest.approx(before.pitch, abs=1e-6)
+
+
+@given(st.floats(0.0, 0.1))
+def test_the_foot_behind_continues_it_also_after_an_early_touchdown(early: float) -> None:
+    continuing = replace(PARAMETERS, rockers=replace(ROCKERS, catch_up=0.0))
+    before = stance_foot(state_at(TIMING.step - early - 1e-9), swing_to(NEXT), WALK, continuing)
+    landed = state_at(0.0)._replace(early=early)
+    assert foot_behind(landed, WALK, continuing).pitch == pytest.approx(before.pitch, abs=1e-6)
+    assert foot_behind(landed, WALK, PARAMETERS).pitch == foot_behind(state_at(0.0), WALK, PARAMETERS).pitch
 
 
 @given(st.floats(0.0, 1.0))

@@ -48,6 +48,14 @@ def test_toes_stay_on_the_ground_while_the_foot_pitches() -> None:
     assert reference.toes == reference.pitch[:2]
 
 
+@given(st.floats(0.0, 0.22), st.floats(0.1, 1.2))
+def test_a_foot_that_pitches_further_than_its_toes_extend_rolls_over_them(since: float, most: float) -> None:
+    reference = over_ball(since, rockers=FootRockers(toes=most))
+    extension, rate = reference.toes
+    assert extension == min(reference.pitch.value, most)
+    assert rate == (reference.pitch.rate if reference.pitch.value <= most else 0.0)
+
+
 def test_a_foot_is_loaded_from_touchdown_on() -> None:
     landed = ROCKERS.over_heel(0.3, np.eye(3))
     assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)
