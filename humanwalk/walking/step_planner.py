@@ -272,9 +272,7 @@ class StepPlanner:
         lead, lead_rate = foot_lead(body, state.heading)
         arm, arm_rate = rotation.arms * lead, rotation.arms * lead_rate
         # The trunk turns at the rate of the path, the headings of the steps by one step's turn at touchdown.
-        turned = state.turn * (state.elapsed - 0.5 * timing.step) if state.is_stepping else 0.0
-        facing = state.heading + turned
-        drop = rotation.drop_at(state.elapsed / timing.step, speed) if state.is_stepping else 0.0
+        facing = state.heading + (state.turn * (state.elapsed - 0.5 * timing.step) if state.is_stepping else 0.0)
         return WalkingReference(
             phase=state.phase,
             phase_time=state.elapsed,
@@ -287,7 +285,7 @@ class StepPlanner:
             right=feet["Right"],
             left=feet["Left"],
             pelvis_yaw=facing - rotation.pelvis * lead,
-            pelvis_roll=-OUTWARD[state.stance] * drop,
+            pelvis_roll=-OUTWARD[state.stance] * rotation.drop_at(state.elapsed / timing.step, speed),
             chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((arm, arm_rate), (-arm, -arm_rate)),
             head_yaw=(-rotation.head * lead, -rotation.head * lead_rate),
