@@ -43,7 +43,7 @@ class Foot(NamedTuple):
         hindfoot, toes: frames of its first and last body.
         p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
         p_TToes: middle of the contact points of the toes in their frame [m], (3,).
-        heel_height: of that point above the terrain [m].
+        heel_height: of the middle of the heel above the terrain [m].
         is_steered: whether the ankle has muscles that turn the foot.
     """
 
