@@ -42,16 +42,16 @@ class Foot(NamedTuple):
     Attributes:
         hindfoot, toes: frames of its first and last body.
         p_BHeel: middle of the heel in the hindfoot's frame [m], (3,).
+        heel_height: of that point above the terrain [m].
         p_TToes: middle of the contact points of the toes in their frame [m], (3,).
-        heel_height: of the middle of the heel above the terrain [m].
         is_steered: whether the ankle has muscles that turn the foot.
     """
 
     hindfoot: FrameMotion
     toes: FrameMotion
     p_BHeel: Array
-    p_TToes: Array
     heel_height: float
+    p_TToes: Array
     is_steered: bool
 
     @property
@@ -94,8 +94,8 @@ def tasks(
     for side in SIDES:
         leg, foot = LEGS[side], reference.foot(side)
         is_steered = side not in passive_ankles
-        frames, (heel, height) = (body.frame(leg.hindfoot), body.frame(leg.toe_segment)), soles.heel(side)
-        state = Foot(*frames, heel, soles.toes(side), height, is_steered)
+        frames = body.frame(leg.hindfoot), body.frame(leg.toe_segment)
+        state = Foot(*frames, *soles.heel(side), soles.toes(side), is_steered)
         found.extend(_FOOT_TASKS[foot.task](state, foot, p))
     found.extend(more)
     J, acceleration, weight = zip(*(task for task in found if task.weight > 0.0), strict=True)
@@ -148,15 +148,18 @@ def _turn(foot: Foot, rotation: Task) -> Task:
     return Task(rotation.J[2:], rotation.acceleration[2:], rotation.weight)
 
 
-def _no_motion(frame: FrameMotion, velocity: Array, p: WholeBodyParameters) -> Iterator[Task]:
-    """A frame in stance should not turn and have a translational velocity in W."""
-    desired = p.stance.damping * (np.concatenate((REST, velocity)) - frame.V_WB) - frame.bias
-    yield Task(frame.J[:3], desired[:3], p.rotation_radius**2 * p.stance.weight)
-    yield Task(frame.J[3:], desired[3:], p.stance.weight)
+def _motion(
+    frame: FrameMotion, p: WholeBodyParameters, w: Array = REST, v: Array = REST, p_BP: Array = REST
+) -> Iterator[Task]:
+    """A frame in stance should turn with the angular velocity w, and its point P move with the velocity v, in W."""
+    point = frame.point(p_BP)
+    turning, moving = p.stance.damping * (w - frame.V_WB[:3]), p.stance.damping * (v - point.velocity)
+    yield Task(frame.J[:3], turning - frame.bias[:3], p.rotation_radius**2 * p.stance.weight)
+    yield Task(point.J, moving - point.bias, p.stance.weight)
 
 
 def _flat(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
-    yield from _no_motion(foot.hindfoot, foot.sinking(reference.R_WS, p), p)
+    yield from _motion(foot.hindfoot, p, v=foot.sinking(reference.R_WS, p))
 
 
 def _heel_strike(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:
@@ -174,20 +177,12 @@ def _heel_off(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> I
     axis = R_WG[:, 1]
     extension, extending = reference.toes
     if angle > extension:
-        yield from _rolling_toes(foot, (rate - extending) * axis, p)
+        yield from _motion(foot.toes, p, w=(rate - extending) * axis, p_BP=foot.p_TToes)
     else:
-        yield from _no_motion(foot.toes, REST, p)
+        yield from _motion(foot.toes, p)
     whole = _rotation(foot.hindfoot, R_WG, p.heel_off, p, rate * axis, acceleration * axis)
     if foot.is_steered:
         yield Task(axis[None] @ whole.J, axis[None] @ whole.acceleration, whole.weight)
-
-
-def _rolling_toes(foot: Foot, velocity: Array, p: WholeBodyParameters) -> Iterator[Task]:
-    """The contact points of the toes stand, and the toes turn with an angular velocity in W."""
-    tips = foot.toes.point(foot.p_TToes)
-    yield Task(tips.J, -p.stance.damping * tips.velocity - tips.bias, p.stance.weight)
-    turning = p.stance.damping * (velocity - foot.toes.V_WB[:3]) - foot.toes.bias[:3]
-    yield Task(foot.toes.J[:3], turning, p.rotation_radius**2 * p.stance.weight)
 
 
 def _swing(foot: Foot, reference: FootReference, p: WholeBodyParameters) -> Iterator[Task]:

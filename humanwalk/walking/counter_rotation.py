@@ -10,7 +10,7 @@ from humanwalk.walking.walking_reference import BodyState
 
 @dataclass(frozen=True)
 class CounterRotation:
-    """Angles per distance between the feet along the heading."""
+    """Angles per distance between the feet along the heading, and the drop of the pelvis per speed."""
 
     pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
     """Yaw of the pelvis, with the leading leg."""
@@ -19,7 +19,7 @@ class CounterRotation:
     """Largest drop of the pelvis toward the swinging leg per forward speed; people have 0.06 (Schwartz et al. 2008)."""
 
     drop_share: float = quantity(0.9, "", 0.1, 1.0)
-    """Share of the step, from touchdown on, in which the pelvis is lower there."""
+    """Share of the step, from touchdown on, during which the pelvis is dropped."""
 
     chest: float = quantity(0.15, "rad/m", 0.0, 1.0)
     """Yaw of the chest, against it."""
