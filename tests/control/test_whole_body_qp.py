@@ -78,11 +78,11 @@ def reference_for(
     )
 
 
-def body_height(body: Dynamics, skeleton: Skeleton) -> list[float]:
-    """Heights of the lowest points of all contact spheres [m]."""
+def sole_points(body: Dynamics, skeleton: Skeleton) -> Array:
+    """Lowest points of all contact spheres of flat feet in W [m], shape (12, 3)."""
     spheres = contact_spheres(skeleton)
     lowest = [np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius)) for sphere in spheres]
-    return [float(body.frame(s.body).point(p).position[2]) for s, p in zip(spheres, lowest, strict=True)]
+    return np.array([body.frame(s.body).point(p).position for s, p in zip(spheres, lowest, strict=True)])
 
 
 def rest(qp: WholeBodyQp) -> Posture:
@@ -131,9 +131,7 @@ def test_the_center_of_pressure_is_the_zero_moment_point_of_the_reference(
 
 def center_of_pressure(dynamics: BodyDynamics, body: Dynamics, forces: Array, skeleton: Skeleton) -> Array:
     """Of the contact forces, on level ground [m], shape (2,)."""
-    spheres = contact_spheres(skeleton)
-    lowest = [np.array(sphere.center) - np.array((0.0, 0.0, sphere.radius)) for sphere in spheres]
-    points = np.array([body.frame(s.body).point(p).position for s, p in zip(spheres, lowest, strict=True)])
+    points = sole_points(body, skeleton)
     pressure: Array = forces[:, 2] @ points[:, :2] / forces[:, 2].sum()
     return pressure
 
@@ -329,8 +327,7 @@ def test_forces_that_lean_toward_the_center_of_mass_push_from_behind_and_brake_a
     for leg, sign in ((LEGS["Right"], 1.0), (LEGS["Left"], -1.0)):
         q[joints.q[joints.names.index(leg.hip_flexion)]] += sign * apart
         q[joints.q[joints.names.index(leg.ankle)]] -= sign * apart
-    lowest = min(body_height(dynamics.at(np.concatenate((q, np.zeros(48)))), skeleton))
-    q[6] -= lowest + 0.0003
+    q[6] -= sole_points(dynamics.at(np.concatenate((q, np.zeros(48)))), skeleton)[:, 2].min() + 0.0003
     body = dynamics.at(np.concatenate((q, np.zeros(48))))
     upright, leaning = (
         WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, force_direction=share))
