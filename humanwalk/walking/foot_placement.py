@@ -76,6 +76,18 @@ class StepPlacement:
         """Minimum sideways distance [m] of a foot that is x [m] ahead of the stance foot."""
         return max(self.min_width - max(abs(x) - self.abreast, 0.0), -self.max_crossover)
 
+    def clear_length(self, x: float, width: float) -> float:
+        """Distance ahead of the stance foot [m] of a foothold that would be x ahead and too narrow there.
+
+        It is farther by half of the width that is missing: beyond `abreast` a foot may be nearer to the other side the
+        farther it is, and the next step corrects a length more easily than a crossing.
+        """
+        farthest = self.abreast + self.min_width + self.max_crossover
+        if abs(x) >= farthest:
+            return x
+        missing = max(self.min_step_width(x) - width, 0.0)
+        return clip(x + math.copysign(0.5 * missing, x + self.abreast), -farthest, farthest)
+
     def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
         """Waypoint beside the stance foot for a swinging foot whose straight way would hit it.
 
@@ -122,7 +134,7 @@ class StepPlacement:
         width = outward * desired.imag
         sideways_excess = max(self.min_width - self.speedup_crossing - width, width - self.speedup_width)
         excess = max(sideways_excess, abs(desired.real) - SPEEDUP_SHARE * self.max_length, 0.0)
-        x = clip(desired.real, -self.max_length, self.max_length)
+        x = self.clear_length(clip(desired.real, -self.max_length, self.max_length), width)
         has_passed = foot.real * x > 0.0
         min_width = max(self.min_step_width(x), self.min_step_width(foot.real)) if has_passed else self.min_width
         return complex(x, outward * clip(width, min_width, self.max_width)), excess

@@ -1,5 +1,7 @@
 """Footholds stay within reach and clear of the stance leg; those excess call for a faster clock."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -26,6 +28,30 @@ def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(
     if abs(foothold.real) <= PLACEMENT.abreast:
         assert width >= PLACEMENT.min_width
     assert excess >= 0.0
+
+
+def crossed_at(x: float) -> float:
+    """Length at which a foothold far across the stance foot ends that balance requires x ahead [m]."""
+    return PLACEMENT.within_reach(complex(x, -2.0), "Right", complex(x, 0.3))[0].real
+
+
+@given(st.floats(-1.0, 1.0))
+def test_a_foothold_across_is_farther_ahead_or_behind_where_the_legs_are_not_side_by_side(x: float) -> None:
+    farthest = PLACEMENT.abreast + PLACEMENT.min_width + PLACEMENT.max_crossover
+    if abs(x) >= farthest:
+        assert crossed_at(x) == x
+    else:
+        assert crossed_at(x) == pytest.approx(math.copysign(farthest, x + PLACEMENT.abreast))
+
+
+@given(st.floats(-0.4, 0.4), st.floats(-0.2, 0.09), st.floats(0.0, 0.1))
+def test_the_length_of_a_narrow_foothold_grows_by_half_of_the_missing_width(
+    x: float, width: float, narrower: float
+) -> None:
+    lengths = [abs(PLACEMENT.clear_length(x, w) + PLACEMENT.abreast) for w in (width, width - narrower)]
+    assert lengths[1] >= lengths[0] >= abs(x + PLACEMENT.abreast)
+    missing = max(PLACEMENT.min_step_width(x) - width, 0.0)
+    assert abs(PLACEMENT.clear_length(x, width) - x) <= 0.5 * missing + 1e-12
 
 
 @given(st.floats(0.16, 0.9), sides)
