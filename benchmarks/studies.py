@@ -256,18 +256,6 @@ def actuations() -> str:
     return study_table("actuations", headings, line)
 
 
-def cheap_gains() -> str:
-    def line(gains: str, runs: list[Row]) -> list[str]:
-        (free,) = (row for row in runs if row["push"] == "none")
-        return [gains, *_walked(free), _survival([row for row in runs if row is not free])[0]]
-
-    def section(rows: list[Row]) -> str:
-        lines = [line(gains, list(runs)) for gains, runs in groupby(rows, key=lambda row: row["gains"])]
-        return table(["gains", *WALKED, "pushes survived"], lines)
-
-    return study_section("cheap_gains", section)
-
-
 def likeness() -> str:
     def section(rows: list[Row]) -> str:
         return "\n\n".join(
@@ -358,7 +346,6 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
-    "howto/tuning.md": (cheap_gains,),
     "likeness.md": (likeness, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),

@@ -107,7 +107,7 @@ def test_the_moving_picture_is_light_enough_for_a_first_screen() -> None:
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-PAGES = ("performance", "balance", "likeness", "contact", "claims", "actuation", "howto/subjects", "howto/tuning")
+PAGES = ("performance", "balance", "likeness", "contact", "claims", "actuation", "howto/subjects")
 
 
 @pytest.mark.parametrize("name", PAGES)

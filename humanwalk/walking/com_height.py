@@ -14,7 +14,7 @@ RISE_SHARE, DESCENT_SHARE = 0.6, 0.8
 class ComHeight:
     """Height of the center of mass."""
 
-    walking: float = quantity(0.997, "", 0.8, 1.0)
+    walking: float = quantity(1.0, "", 0.8, 1.0)
     """Height at the top of the arcs in walking, relative to the height with straight legs."""
 
     standing: float = quantity(0.985, "", 0.8, 1.0)
@@ -23,7 +23,7 @@ class ComHeight:
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
-    amplitude: float = quantity(0.0085, "s2/m", 0.0, 0.05)
+    amplitude: float = quantity(0.0035, "s2/m", 0.0, 0.05)
     """Amplitude of the arcs per squared speed; the drop between two straight legs is proportional to the square of the
     step length."""
 

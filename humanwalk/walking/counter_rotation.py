@@ -15,7 +15,7 @@ class CounterRotation:
     pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
     """Yaw of the pelvis, with the leading leg."""
 
-    drop: float = quantity(0.0, "rad s/m", 0.0, 0.3)
+    drop: float = quantity(0.06, "rad s/m", 0.0, 0.3)
     """Largest drop of the pelvis toward the swinging leg per forward speed; people have 0.06 (Schwartz et al. 2008)."""
 
     drop_share: float = quantity(0.9, "", 0.1, 1.0)

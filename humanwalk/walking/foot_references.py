@@ -19,6 +19,11 @@ TOES_STRAIGHT = 0.4
 (docs/balance.md)."""
 
 
+def climbing_share(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
+    """How much of a step up or down the step from `start` to `goal` is, 0 to 1."""
+    return 1.0 - parameters.swing.rolling_share(start.step_to(goal))
+
+
 def rollover_speed(
     state: PlannerState, start: Foothold, goal: Foothold, command: Command, parameters: StepPlannerParameters
 ) -> float:
@@ -30,20 +35,20 @@ def rollover_speed(
     that the foot could be level.
     """
     length = ((goal.position - start.position) / state.direction).real
-    climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
+    climbing = climbing_share(start, goal, parameters)
     ordinary = min(command.forward, SHORT_STEP * length / state.timing.step)
     return (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
 
 
-def heel_off_lead(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
-    """Time from heel-off to touchdown of the other foot in the step from `start` to `goal` [s].
+def heel_off_lead(start: Foothold, goal: Foothold, speed: float, parameters: StepPlannerParameters) -> float:
+    """Time from heel-off to touchdown of the other foot in the step from `start` to `goal` at a forward speed [s].
 
     Before a step up, and onto another face, the heel stays on the ground: a walker on its toes cannot move the
     zero-moment point back, and on another face the foothold cannot follow the body. Before a step down it rises
     earlier, because the ankle bends no further while the body sinks.
     """
     swing, rockers, step = parameters.swing, parameters.rockers, start.step_to(goal)
-    level = rockers.ball * swing.rolling_share(max(step, 0.0)) if start.face.covers_as(goal.face) else 0.0
+    level = rockers.lead(speed) * swing.rolling_share(max(step, 0.0)) if start.face.covers_as(goal.face) else 0.0
     descent = swing.descent_share(step)
     return (1.0 - descent) * level + descent * rockers.descent
 
@@ -54,7 +59,7 @@ def stance_rollover_speed(
     """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
     timing, rockers = state.timing, parameters.rockers
     speed = rollover_speed(state, state.stance_foot, swing.foothold, command, parameters)
-    lead = heel_off_lead(state.stance_foot, swing.foothold, parameters)
+    lead = heel_off_lead(state.stance_foot, swing.foothold, command.forward, parameters)
     return speed if state.elapsed > timing.step - lead and rockers.heel_rises(speed) else None
 
 
@@ -69,9 +74,10 @@ def stance_foot(
     speed = stance_rollover_speed(state, swing, command, parameters) if swing is not None else None
     if swing is None or speed is None:
         return FootReference(FootTask.FLAT, 1.0, state.heading, R_WS)
-    lead = heel_off_lead(state.stance_foot, swing.foothold, parameters)
+    lead = heel_off_lead(state.stance_foot, swing.foothold, command.forward, parameters)
     since, duration = state.elapsed - (timing.step - lead), lead + timing.double_support
-    return rockers.over_ball(since, duration, 1.0, state.heading, R_WS, speed)
+    climbing = climbing_share(state.stance_foot, swing.foothold, parameters)
+    return rockers.over_ball(since, duration, 1.0, state.heading, R_WS, speed, climbing)
 
 
 def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
@@ -81,10 +87,12 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
     speed = rollover_speed(state, state.old_foot, state.stance_foot, command, parameters)
     if not rockers.heel_rises(speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
-    lead = heel_off_lead(state.old_foot, state.stance_foot, parameters)
-    since = lead + state.elapsed - (1.0 - rockers.catch_up) * state.early
+    lead = heel_off_lead(state.old_foot, state.stance_foot, command.forward, parameters)
+    # After an early touchdown of the other foot, a heel-off that has begun goes on without a jump.
+    since = state.elapsed + max(lead - state.early, 0.0)
     duration = lead + timing.double_support
-    return rockers.over_ball(max(since, 0.0), duration, load, state.old_heading, R_WS, speed)
+    climbing = climbing_share(state.old_foot, state.stance_foot, parameters)
+    return rockers.over_ball(since, duration, load, state.old_heading, R_WS, speed, climbing)
 
 
 def swinging_foot(

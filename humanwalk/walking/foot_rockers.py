@@ -16,28 +16,25 @@ class FootRockers:
     heel: float = quantity(0.15, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.135, "s", 0.0, 0.3)
-    """Time from heel-off to touchdown of the other foot."""
+    ball: float = quantity(0.18, "s", 0.0, 0.3)
+    """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster; proportional to the speed
+    below, because a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.0, "rad", 0.0, 1.7)
+    pitch: float = quantity(1.1, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster; proportional to the speed below."""
 
     full_pitch_speed: float = quantity(1.0, "m/s", 0.1, 5.0)
-    """Forward speed from which on the pitch at toe-off is greatest."""
+    """Forward speed from which on the heel rises earliest and the pitch at toe-off is greatest."""
 
-    late_rise: float = quantity(0.2, "", 0.0, 1.0)
+    late_rise: float = quantity(0.6, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
-    toes: float = quantity(1.2, "rad", 0.0, 1.2)
-    """Largest extension of the toes: a foot that pitches further rolls over their tips. The default is no limit
-    (docs/likeness.md, "Mechanisms that are off by default")."""
-
-    catch_up: float = quantity(1.0, "", 0.0, 1.0)
-    """Share of the time by which the other foot lands early that the pitch makes up for at once; with 0 it goes on
-    without a jump."""
+    toes: float = quantity(0.6, "rad", 0.0, 1.2)
+    """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
+    (docs/likeness.md, "What makes the forces human")."""
 
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)
     """Forward speed below which the feet leave the ground flat."""
@@ -46,12 +43,19 @@ class FootRockers:
         """Whether there is a heel-off at a forward speed [m/s]."""
         return speed > self.min_speed
 
+    def lead(self, speed: float) -> float:
+        """Time from heel-off to touchdown of the other foot on level ground [s]."""
+        return self.ball * self._share(speed)
+
+    def _share(self, speed: float) -> float:
+        return clip(speed / self.full_pitch_speed, 0.0, 1.0)
+
     def over_heel(self, yaw: float, R_WS: Array) -> FootReference:
         """Reference of a foot that has just landed on ground with the axes R_WS."""
         return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS)
 
     def over_ball(
-        self, since: float, duration: float, load: float, yaw: float, R_WS: Array, speed: float
+        self, since: float, duration: float, load: float, yaw: float, R_WS: Array, speed: float, climbing: float
     ) -> FootReference:
         """Reference of a foot after heel-off.
 
@@ -62,12 +66,15 @@ class FootRockers:
             yaw: Yaw of the foot [rad].
             R_WS: Axes of the ground under the foot.
             speed: Forward speed [m/s].
+            climbing: How much of a step up or down the step is, 0 to 1. There the toes stay on the ground: their tips
+                may be at its edge.
         """
-        final = self.pitch * clip(speed / self.full_pitch_speed, 0.0, 1.0)
+        final = self.pitch * self._share(speed)
         s, late = min(since / duration, 1.0), self.late_rise
         value = final * s * s * (1.0 - late + late * s)
         rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration
         acceleration = final * (2.0 * (1.0 - late) + 6.0 * late * s) / duration**2
         pitch = ScalarMotion(value, rate, acceleration)
-        toes = pitch[:2] if value <= self.toes else (self.toes, 0.0)
+        largest = (1.0 - climbing) * self.toes + climbing * max(self.toes, final)
+        toes = pitch[:2] if value <= largest else (largest, 0.0)
         return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes)

@@ -44,7 +44,7 @@ class SwingParameters:
     landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    push_off: float = quantity(8.6, "1/m", 0.0, 30.0)
+    push_off: float = quantity(6.0, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
     landing_speed_ratio: float = quantity(0.55, "", 0.0, 1.0)

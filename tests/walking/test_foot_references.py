@@ -1,7 +1,5 @@
 """References of the feet: heel strike, flat, heel-off and swing in their order, without jumps."""
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -51,19 +49,29 @@ def test_the_stance_foot_rolls_from_heel_strike_to_heel_off(elapsed: float, step
     assert (reference.task, reference.load) == (task, 1.0)
 
 
-def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot() -> None:
-    before = stance_foot(state_at(TIMING.step - 1e-9), swing_to(NEXT), WALK, PARAMETERS)
-    after = foot_behind(state_at(0.0), WALK, PARAMETERS)
-    assert after.pitch == pytest.approx(before.pitch, abs=1e-6)
+@given(st.floats(0.3, 1.0))
+def test_the_heel_rises_later_the_slower_the_walk(speed: float) -> None:
+    lead = speed / ROCKERS.full_pitch_speed * ROCKERS.ball
+    for before, task in ((1.01 * lead, FootTask.FLAT), (0.99 * lead, FootTask.HEEL_OFF)):
+        state, swing = state_at(TIMING.step - before), swing_to(NEXT)
+        assert stance_foot(state, swing, Command(speed), PARAMETERS).task is task
+
+
+@given(st.floats(-0.3, 0.3))
+def test_the_toes_extend_further_before_a_step_up_or_down(rise: float) -> None:
+    at_lift_off, higher = state_at(TIMING.double_support), STANCE._replace(ground=rise)
+    level = foot_behind(at_lift_off, WALK, PARAMETERS)
+    climbing = foot_behind(at_lift_off._replace(left=higher), WALK, PARAMETERS)
+    assert climbing.toes[0] >= level.toes[0] == ROCKERS.toes
+    if abs(rise) >= PARAMETERS.swing.flat_rise:
+        assert climbing.toes[0] == climbing.pitch.value > ROCKERS.toes
 
 
 @given(st.floats(0.0, 0.1))
-def test_the_foot_behind_continues_it_also_after_an_early_touchdown(early: float) -> None:
-    continuing = replace(PARAMETERS, rockers=replace(ROCKERS, catch_up=0.0))
-    before = stance_foot(state_at(TIMING.step - early - 1e-9), swing_to(NEXT), WALK, continuing)
+def test_the_foot_behind_continues_the_heel_off_of_the_stance_foot_after_an_early_touchdown(early: float) -> None:
+    before = stance_foot(state_at(TIMING.step - early - 1e-9), swing_to(NEXT), WALK, PARAMETERS)
     landed = state_at(0.0)._replace(early=early)
-    assert foot_behind(landed, WALK, continuing).pitch == pytest.approx(before.pitch, abs=1e-6)
-    assert foot_behind(landed, WALK, PARAMETERS).pitch == foot_behind(state_at(0.0), WALK, PARAMETERS).pitch
+    assert foot_behind(landed, WALK, PARAMETERS).pitch == pytest.approx(before.pitch, abs=1e-6)
 
 
 @given(st.floats(0.0, 1.0))

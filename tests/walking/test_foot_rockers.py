@@ -12,8 +12,8 @@ ROCKERS = FootRockers()
 DOUBLE_SUPPORT = 0.1
 
 
-def over_ball(since: float, speed: float = 1.2, rockers: FootRockers = ROCKERS) -> FootReference:
-    return rockers.over_ball(since, rockers.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed)
+def over_ball(since: float, speed: float = 1.2, rockers: FootRockers = ROCKERS, climbing: float = 0.0) -> FootReference:
+    return rockers.over_ball(since, rockers.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed, climbing)
 
 
 def test_heels_rise_above_a_minimum_forward_speed() -> None:
@@ -54,6 +54,12 @@ def test_a_foot_that_pitches_further_than_its_toes_extend_rolls_over_them(since:
     extension, rate = reference.toes
     assert extension == min(reference.pitch.value, most)
     assert rate == (reference.pitch.rate if reference.pitch.value <= most else 0.0)
+
+
+@given(st.floats(0.0, 0.22), st.floats(0.1, 1.2), st.floats(0.0, 1.2))
+def test_toes_stay_on_the_ground_in_a_step_up_or_down(since: float, most: float, speed: float) -> None:
+    reference = over_ball(since, speed, FootRockers(toes=most), climbing=1.0)
+    assert reference.toes == reference.pitch[:2]
 
 
 def test_a_foot_is_loaded_from_touchdown_on() -> None:
