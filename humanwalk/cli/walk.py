@@ -18,6 +18,7 @@ from humanwalk.body.subject import Subject
 from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
+from humanwalk.parameter_file import plain
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
 from humanwalk.run.outcome import Outcome
@@ -25,6 +26,9 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
+
+STYLED = "normative"
+"""The shipped scenario with a style."""
 
 
 def walk_and_write(
@@ -152,6 +156,8 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
 def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) -> dict[str, str]:
     """Overrides of a scenario that walks a recording on its own feet: its angles as style, its speed and its steps.
 
+    The other parameters of the planner are those of the shipped scenario with a style.
+
     Args:
         recording: File of joint angles with the path of the pelvis.
         mapping: File that assigns columns to joints; None: by name.
@@ -163,13 +169,15 @@ def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) 
     style = RecordedStyle(**_files(recording, mapping))
     gait = style.gait(subject)
     points = [{"time": 0.2, "forward": gait.speed}]
+    planner = plain(load_scenario(STYLED))["controller"]["balanced"]["planner"]
+    # Parameters are those of the reference body.
+    planner["timing"] |= {"step": gait.step / subject.scale.time, "walk_ratio": 0.0}
     return {
         "controller": json.dumps(
             {
                 "balanced": {
                     "command": {"points": points, "acceleration": 1.0},
-                    # Parameters are those of the reference body.
-                    "planner": {"timing": {"step": gait.step / subject.scale.time}},
+                    "planner": planner,
                     "style": {"recorded": _files(recording, mapping)},
                 }
             }

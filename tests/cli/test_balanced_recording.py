@@ -1,12 +1,14 @@
 """A recording walked on its own feet: its speed and steps are commanded, its angles are a style."""
 
 import runpy
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from humanwalk.run.folder import Run
+from humanwalk.scenario import load_scenario
 
 SPEED, STEP = 0.8, 0.6
 SLOW_TRIAL = Path(__file__).parents[2] / "tools" / "slow_trial.py"
@@ -33,7 +35,10 @@ def test_its_speed_and_steps_are_commanded_and_nothing_supports_it(
     assert run.summary["style"] == "recorded"
     assert run.summary["external_support"] is False
     assert controller.command.points[0].forward == pytest.approx(SPEED, abs=0.01)
-    assert controller.planner.timing.step == pytest.approx(STEP, abs=0.01)
+    timing = controller.planner.timing
+    assert timing.step == pytest.approx(STEP, abs=0.01)
+    styled: Any = load_scenario("normative").controller
+    assert controller.planner == replace(styled.planner, timing=timing)
     recording.unlink()
     assert humanwalk("reproduce", "walked")[0] == 0
 
