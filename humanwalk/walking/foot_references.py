@@ -4,6 +4,7 @@ from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.terrain.face import surface_axes
 from humanwalk.walking.command import Command
+from humanwalk.walking.foot_rockers import Rollover
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import blend
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -19,25 +20,21 @@ TOES_STRAIGHT = 0.4
 (docs/balance.md)."""
 
 
-def climbing_share(start: Foothold, goal: Foothold, parameters: StepPlannerParameters) -> float:
-    """How much of a step up or down the step from `start` to `goal` is, 0 to 1."""
-    return 1.0 - parameters.swing.rolling_share(start.step_to(goal))
-
-
-def rollover_speed(
+def rollover(
     state: PlannerState, start: Foothold, goal: Foothold, command: Command, parameters: StepPlannerParameters
-) -> float:
-    """Forward speed for the rollover of a foot in the step from `start` to `goal` [m/s].
+) -> Rollover:
+    """How a foot leaves the ground in the step from `start` to `goal`.
 
-    It is the commanded one, or less if the step is short or backward. A foot that is steep when it leaves the ground
-    below the body catches the ground with its toes. In a step up or down it is large: the ankle of a foot that rises
-    beside a riser is far behind the body, and that of one below which the body sinks is, too; it does not bend so far
-    that the foot could be level.
+    Its speed is the commanded one, or less if the step is short or backward. A foot that is steep when it leaves the
+    ground below the body catches the ground with its toes. In a step up or down it is large: the ankle of a foot that
+    rises beside a riser is far behind the body, and that of one below which the body sinks is, too; it does not bend so
+    far that the foot could be level.
     """
     length = ((goal.position - start.position) / state.direction).real
-    climbing = climbing_share(start, goal, parameters)
+    climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
     ordinary = min(command.forward, SHORT_STEP * length / state.timing.step)
-    return (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
+    speed = (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
+    return Rollover(speed, heel_off_lead(start, goal, command.forward, parameters), climbing)
 
 
 def heel_off_lead(start: Foothold, goal: Foothold, speed: float, parameters: StepPlannerParameters) -> float:
@@ -53,14 +50,13 @@ def heel_off_lead(start: Foothold, goal: Foothold, speed: float, parameters: Ste
     return (1.0 - descent) * level + descent * rockers.descent
 
 
-def stance_rollover_speed(
+def stance_rollover(
     state: PlannerState, swing: Swing, command: Command, parameters: StepPlannerParameters
-) -> float | None:
-    """Speed for the rollover of the stance foot after heel-off [m/s]; None while its heel is on the ground."""
-    timing, rockers = state.timing, parameters.rockers
-    speed = rollover_speed(state, state.stance_foot, swing.foothold, command, parameters)
-    lead = heel_off_lead(state.stance_foot, swing.foothold, command.forward, parameters)
-    return speed if state.elapsed > timing.step - lead and rockers.heel_rises(speed) else None
+) -> Rollover | None:
+    """Rollover of the stance foot after heel-off; None while its heel is on the ground."""
+    found = rollover(state, state.stance_foot, swing.foothold, command, parameters)
+    has_begun = state.elapsed > state.timing.step - found.lead
+    return found if has_begun and parameters.rockers.heel_rises(found.speed) else None
 
 
 def stance_foot(
@@ -71,28 +67,23 @@ def stance_foot(
     R_WS = state.stance_foot.R_WS
     if state.steps > 0 and state.elapsed < rockers.heel:
         return rockers.over_heel(state.heading, R_WS)
-    speed = stance_rollover_speed(state, swing, command, parameters) if swing is not None else None
-    if swing is None or speed is None:
+    found = stance_rollover(state, swing, command, parameters) if swing is not None else None
+    if found is None:
         return FootReference(FootTask.FLAT, 1.0, state.heading, R_WS)
-    lead = heel_off_lead(state.stance_foot, swing.foothold, command.forward, parameters)
-    since, duration = state.elapsed - (timing.step - lead), lead + timing.double_support
-    climbing = climbing_share(state.stance_foot, swing.foothold, parameters)
-    return rockers.over_ball(since, duration, 1.0, state.heading, R_WS, speed, climbing)
+    since = state.elapsed - (timing.step - found.lead)
+    return rockers.over_ball(since, timing.double_support, 1.0, state.heading, R_WS, found)
 
 
 def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
     """Reference of the foot that leaves the ground at the end of double support."""
     timing, rockers = state.timing, parameters.rockers
     load, R_WS = max(1.0 - state.elapsed / timing.double_support, 0.0), state.old_foot.R_WS
-    speed = rollover_speed(state, state.old_foot, state.stance_foot, command, parameters)
-    if not rockers.heel_rises(speed):
+    found = rollover(state, state.old_foot, state.stance_foot, command, parameters)
+    if not rockers.heel_rises(found.speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
-    lead = heel_off_lead(state.old_foot, state.stance_foot, command.forward, parameters)
     # After an early touchdown of the other foot, a heel-off that has begun goes on without a jump.
-    since = state.elapsed + max(lead - state.early, 0.0)
-    duration = lead + timing.double_support
-    climbing = climbing_share(state.old_foot, state.stance_foot, parameters)
-    return rockers.over_ball(since, duration, load, state.old_heading, R_WS, speed, climbing)
+    since = state.elapsed + max(found.lead - state.early, 0.0)
+    return rockers.over_ball(since, timing.double_support, load, state.old_heading, R_WS, found)
 
 
 def swinging_foot(

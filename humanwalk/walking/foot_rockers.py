@@ -1,12 +1,28 @@
 """How a loaded foot rolls: over the heel after touchdown, over the ball before toe-off (Perry's rockers)."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask
+
+
+class Rollover(NamedTuple):
+    """How a foot leaves the ground at the end of its stance.
+
+    Attributes:
+        speed: Forward speed [m/s]; determines the pitch at toe-off.
+        lead: Time from heel-off to touchdown of the other foot [s].
+        climbing: How much of a step up or down the step is, 0 to 1. In such a step the toes stay on the ground, because
+            their tips may be at an edge.
+    """
+
+    speed: float
+    lead: float
+    climbing: float
 
 
 @dataclass(frozen=True)
@@ -55,26 +71,24 @@ class FootRockers:
         return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS)
 
     def over_ball(
-        self, since: float, duration: float, load: float, yaw: float, R_WS: Array, speed: float, climbing: float
+        self, since: float, double_support: float, load: float, yaw: float, R_WS: Array, rollover: Rollover
     ) -> FootReference:
         """Reference of a foot after heel-off.
 
         Args:
             since: Time since heel-off [s].
-            duration: Time from heel-off to toe-off [s].
+            double_support: Time from touchdown of the other foot to toe-off [s].
             load: See FootReference.
             yaw: Yaw of the foot [rad].
             R_WS: Axes of the ground under the foot.
-            speed: Forward speed [m/s].
-            climbing: How much of a step up or down the step is, 0 to 1. There the toes stay on the ground: their tips
-                may be at its edge.
+            rollover: How the foot leaves the ground.
         """
-        final = self.pitch * self._share(speed)
+        final, duration = self.pitch * self._share(rollover.speed), rollover.lead + double_support
         s, late = min(since / duration, 1.0), self.late_rise
         value = final * s * s * (1.0 - late + late * s)
         rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration
         acceleration = final * (2.0 * (1.0 - late) + 6.0 * late * s) / duration**2
         pitch = ScalarMotion(value, rate, acceleration)
-        largest = (1.0 - climbing) * self.toes + climbing * max(self.toes, final)
+        largest = (1.0 - rollover.climbing) * self.toes + rollover.climbing * max(self.toes, final)
         toes = pitch[:2] if value <= largest else (largest, 0.0)
         return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes)

@@ -18,7 +18,7 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
 from humanwalk.walking.foot_placement import OUTWARD, foothold_gain
-from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover_speed, swinging_foot
+from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
 from humanwalk.walking.motions import ScalarMotion, blend
@@ -151,7 +151,7 @@ class StepPlanner:
 
         # Pivot: feedback of the error of the DCM, with the zero-moment point within the base of support.
         gain = p.double_support_gain if state.phase is Phase.DOUBLE_SUPPORT else p.dcm_gain
-        heel_is_up = state.swing is not None and stance_rollover_speed(state, state.swing, command, p) is not None
+        heel_is_up = state.swing is not None and stance_rollover(state, state.swing, command, p) is not None
         pivot, lead = segments[0].start + (1.0 + gain) * (dcm - dcm_reference), pivot_lead(state, gait)
         zmp = self._clamp(state, pivot - lead, heel_is_up)
         pivot = zmp + lead

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from humanwalk.body.contact import SoleExtent
 from humanwalk.walking.command import Command
 from humanwalk.walking.commanded_path import PathFollowing
-from humanwalk.walking.foot_references import foot_behind, rollover_speed, stance_foot, swinging_foot
+from humanwalk.walking.foot_references import foot_behind, rollover, stance_foot, swinging_foot
 from humanwalk.walking.footholds import LEVEL, Foothold
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -85,7 +85,7 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
     forward: float, length: float
 ) -> None:
     goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
-    speed = rollover_speed(state_at(0.0), OLD, goal, Command(forward), PARAMETERS)
+    speed = rollover(state_at(0.0), OLD, goal, Command(forward), PARAMETERS).speed
     assert speed <= forward
     if length <= 0.0:
         assert speed <= 0.0

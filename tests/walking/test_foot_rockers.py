@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.foot_rockers import FootRockers
+from humanwalk.walking.foot_rockers import FootRockers, Rollover
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
 ROCKERS = FootRockers()
@@ -13,7 +13,7 @@ DOUBLE_SUPPORT = 0.1
 
 
 def over_ball(since: float, speed: float = 1.2, rockers: FootRockers = ROCKERS, climbing: float = 0.0) -> FootReference:
-    return rockers.over_ball(since, rockers.ball + DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), speed, climbing)
+    return rockers.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), Rollover(speed, rockers.ball, climbing))
 
 
 def test_heels_rise_above_a_minimum_forward_speed() -> None:
