@@ -4,8 +4,9 @@
 
 BIN := .venv/bin
 ARGS ?=
-# Tests of one file run in one worker, so that they share its simulations.
-PYTEST_ARGS ?= -n auto --maxprocesses 8 --dist loadfile
+# Tests of one file run in one worker, so that they share its simulations. A worker that crashes ends the tests: with a
+# replacement pytest-xdist 3.8 can wait forever.
+PYTEST_ARGS ?= -n auto --maxprocesses 8 --dist loadfile --max-worker-restart 0
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8

@@ -25,7 +25,7 @@ from humanwalk.measures.signals import TIME
 from humanwalk.run.folder import Run
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
-from humanwalk.view.browser import MESA, RENDERING, find_browser, has_sandbox
+from humanwalk.view.browser import RENDERING, launch_options
 from humanwalk.view.drive_page import FORWARD, SIDEWAYS, START, TURN
 from humanwalk.walking.command import CommandParameters
 
@@ -40,9 +40,7 @@ def real_time(duration: float, external: bool) -> None:
     with ExitStack() as stack:
         # The browser is open when the command is given.
         playwright = stack.enter_context(sync_playwright())
-        chromium = playwright.chromium.launch(
-            executable_path=find_browser(), args=RENDERING, env={**os.environ, **MESA}, chromium_sandbox=has_sandbox()
-        )
+        chromium = playwright.chromium.launch(**launch_options(RENDERING))
         stack.callback(chromium.close)
         began = time.perf_counter()
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) / "run"

@@ -3,13 +3,18 @@
 What is opened is our own page with the recording of the given one, see `safe_page`. Should a script run in it anyway,
 Chromium has no name resolution, no proxy that answers and no direct connection. Its sandbox is on, except for root,
 as whom Chromium does not start with it.
+
+Playwright's asynchronous interface drives several browsers from one thread. Its synchronous one would need a thread for
+each, and has crashed the interpreter in them.
 """
 
+import asyncio
 import base64
 import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import AsyncIterator, Coroutine, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -21,7 +26,7 @@ from humanwalk.view.replay import content_policy, safe_page
 from humanwalk.view.views import Camera
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.async_api import Browser, Page
 
 CHROMIUM = "CHROMIUM"
 """Environment variable that names the browser, before the names that are looked for."""
@@ -119,33 +124,39 @@ class Stage:
     complaints: list[str]
     _page: "Page"
 
-    def still(self, time: float, camera: Camera, format: Format = "jpeg") -> bytes:
+    async def still(self, time: float, camera: Camera, format: Format = "jpeg") -> bytes:
         """The picture of one instant [s], as the bytes of a JPEG or PNG file.
 
         Raises:
             ParameterError: The browser has crashed or hangs.
         """
-        from playwright.sync_api import Error
+        from playwright.async_api import Error
 
         arguments = [time, list(camera.position), list(camera.target), f"image/{format}", JPEG_QUALITY]
         try:
-            return base64.b64decode(_evaluate(self._page, STILL, arguments, STILL_TIMEOUT_S))
+            return base64.b64decode(await _evaluate(self._page, STILL, arguments, STILL_TIMEOUT_S))
         except Error as error:
             raise ParameterError(f"browser: failed while drawing the frame at {time:g} s: {_line(error)}") from None
 
-    def pose(self, time: float, *body: str) -> list[float]:
+    async def pose(self, time: float, *body: str) -> list[float]:
         """X_WB of a body as shown by the page: 16 numbers of a 4x4 matrix, by columns.
 
         Args:
             time: Instant [s].
             body: Name, or names from the human's down to the geometry's.
         """
-        elements: list[float] = _evaluate(self._page, POSE, [time, list(body)], STILL_TIMEOUT_S)
+        elements: list[float] = await _evaluate(self._page, POSE, [time, list(body)], STILL_TIMEOUT_S)
         return elements
 
 
-@contextmanager
-def open_stage(page: Path, width: int, height: int, max_duration: float) -> Iterator[Stage]:
+def run_browsers[T](drawing: Coroutine[Any, Any, T]) -> T:
+    """Result of a coroutine that uses browsers, in a thread of its own: that of a notebook already runs a loop."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, drawing).result()
+
+
+@asynccontextmanager
+async def open_stage(page: Path, width: int, height: int, max_duration: float) -> AsyncIterator[Stage]:
     """Open the recording of a replay page in a headless browser, which is closed at the end of the block.
 
     Args:
@@ -157,33 +168,28 @@ def open_stage(page: Path, width: int, height: int, max_duration: float) -> Iter
         ParameterError: No Playwright, browser or WebGL, with what to install; or a page that cannot be shown.
     """
     text = safe_page([page])
-    with open_browser() as browser:
-        yield _hold(browser, text, printable(page), width, height, max_duration)
+    async with open_browser() as browser:
+        yield await _hold(browser, text, printable(page), width, height, max_duration)
 
 
-@contextmanager
-def open_browser() -> Iterator["Browser"]:
+@asynccontextmanager
+async def open_browser() -> AsyncIterator["Browser"]:
     """Start a headless Chromium that renders on the processor and has no network.
 
     Raises:
         ParameterError: No Playwright or no browser, with what to install.
     """
     try:
-        from playwright.sync_api import Error, sync_playwright
+        from playwright.async_api import Error, async_playwright
     except ImportError:
         raise missing_package("playwright", "video") from None
-    with sync_playwright() as playwright:
-        executable = find_browser()
+    async with async_playwright() as playwright:
+        options = launch_options()
         try:
-            # Ctrl-C is handled here, between two frames.
-            browser = playwright.chromium.launch(
-                executable_path=executable,
-                args=FLAGS,
-                env={**os.environ, **MESA},
-                handle_sigint=False,
-                chromium_sandbox=has_sandbox(),
-            )
+            # Ctrl-C is handled between two frames.
+            browser = await playwright.chromium.launch(**options, handle_sigint=False)
         except Error as error:
+            executable = options["executable_path"]
             if executable is None:
                 raise ParameterError(
                     "browser: no Chromium or Chrome found; install one (Debian: apt-get install chromium; anywhere: "
@@ -197,7 +203,24 @@ def open_browser() -> Iterator["Browser"]:
         finally:
             # Playwright's process may have ended with the terminal.
             with suppress(Error):
-                browser.close()
+                await browser.close()
+
+
+def launch_options(flags: Sequence[str] | None = None) -> dict[str, Any]:
+    """Arguments of Playwright's `launch` for a Chromium that renders on the processor.
+
+    Args:
+        flags: Of Chromium; None for FLAGS, without network.
+
+    Raises:
+        ParameterError: $CHROMIUM is not executable.
+    """
+    return {
+        "executable_path": find_browser(),
+        "args": FLAGS if flags is None else flags,
+        "env": {**os.environ, **MESA},
+        "chromium_sandbox": has_sandbox(),
+    }
 
 
 def has_sandbox() -> bool:
@@ -222,36 +245,36 @@ def find_browser() -> str | None:
     return next(filter(None, map(shutil.which, (*BROWSER_NAMES, *MACOS_BROWSERS))), None)
 
 
-def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max_duration: float) -> Stage:
-    from playwright.sync_api import Error
+async def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max_duration: float) -> Stage:
+    from playwright.async_api import Error
 
-    tab = browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=1)
+    tab = await browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=1)
     complaints: list[str] = []
 
-    def answer(route: Any) -> None:
+    async def answer(route: Any) -> None:
         if route.request.url == PAGE_URL:
             policy = {"Content-Security-Policy": content_policy()}
-            route.fulfill(body=text, content_type="text/html; charset=utf-8", headers=policy)
+            await route.fulfill(body=text, content_type="text/html; charset=utf-8", headers=policy)
         else:
             complaints.append(f"requested {route.request.url}")
-            route.abort()
+            await route.abort()
 
     def log(message: Any) -> None:
         if message.type in ("error", "warning"):
             complaints.append(f"{message.type}: {message.text}")
 
-    tab.add_init_script(NO_FRAMES)
-    tab.route("**/*", answer)
+    await tab.add_init_script(NO_FRAMES)
+    await tab.route("**/*", answer)
     tab.on("pageerror", lambda error: complaints.append(f"error: {error}"))
     tab.on("console", log)
-    if not tab.evaluate(HAS_WEBGL):
+    if not await tab.evaluate(HAS_WEBGL):
         raise ParameterError(
             "browser: no WebGL; allowed: a Chromium with SwiftShader (Debian: apt-get install chromium; anywhere: "
             f"playwright install chromium); name it in ${CHROMIUM}"
         )
     try:
-        tab.goto(PAGE_URL, timeout=1000.0 * START_TIMEOUT_S)
-        duration = float(_evaluate(tab, LOADED_DURATION, None, START_TIMEOUT_S))
+        await tab.goto(PAGE_URL, timeout=1000.0 * START_TIMEOUT_S)
+        duration = float(await _evaluate(tab, LOADED_DURATION, None, START_TIMEOUT_S))
     except Error as error:
         raise ParameterError(f"{name}: does not load: {_line(error)}; allowed: a page of `humanwalk walk`") from None
     if not 0.0 < duration <= max_duration + DURATION_TOLERANCE:
@@ -259,14 +282,14 @@ def _hold(browser: "Browser", text: str, name: str, width: int, height: int, max
             f"{name}: a recording of {duration:g} s{''.join(f'; {printable(text)}' for text in complaints[:3])}; "
             f"allowed: up to {max_duration:g} s, by the run's summary; walk again"
         )
-    _evaluate(tab, HOLD, None, STILL_TIMEOUT_S)
+    await _evaluate(tab, HOLD, None, STILL_TIMEOUT_S)
     return Stage(duration, complaints, tab)
 
 
-def _evaluate(tab: "Page", function: str, argument: Any, timeout_s: float) -> Any:
+async def _evaluate(tab: "Page", function: str, argument: Any, timeout_s: float) -> Any:
     """Result of a JavaScript function that returns no false value; unlike `Page.evaluate`, with a timeout."""
-    result = tab.wait_for_function(function, arg=argument, polling=100.0, timeout=1000.0 * timeout_s)
-    return result.json_value()
+    result = await tab.wait_for_function(function, arg=argument, polling=100.0, timeout=1000.0 * timeout_s)
+    return await result.json_value()
 
 
 def _line(error: Exception) -> str:

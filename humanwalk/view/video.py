@@ -1,20 +1,18 @@
 """The replay of a run as a video or a strip of stills, rendered frame by frame in a headless browser."""
 
+import asyncio
 import io
 import math
 import re
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from os import cpu_count
 from pathlib import Path
-from queue import Queue
-from threading import Event
 
 from PIL import Image, ImageDraw, ImageFont
 
@@ -23,8 +21,7 @@ from humanwalk.files import make_folder, write_whole
 from humanwalk.quantity import ParameterError, check, quantity, require_in_range
 from humanwalk.run.fall_picture import replay_duration
 from humanwalk.run.folder import Run
-from humanwalk.view.browser import open_stage
-from humanwalk.view.replay import content_policy
+from humanwalk.view.browser import open_stage, run_browsers
 from humanwalk.view.views import VIEWS, View, camera
 
 FORMATS = (".mp4", ".gif", ".webp")
@@ -154,7 +151,7 @@ def record_video(
         run: Folder of the run.
         output: H.264 as .mp4, or .gif or .webp, which loop.
         parameters: What to render.
-        on_progress: Called with the number of rendered frames, and of all frames.
+        on_progress: Called with the number of rendered frames, and of all frames, in the thread that draws.
 
     Returns:
         Number of frames.
@@ -172,58 +169,45 @@ def record_video(
     # Checked before the frames are rendered.
     make_folder(output.parent)
     with tempfile.TemporaryDirectory(prefix="humanwalk-video-") as folder, between_frames() as interrupted:
-        drawn = 0
-        with closing(_draw_frames(page, duration, parameters, Path(folder))) as drawing:
-            for frames in drawing:
-                if interrupted():
-                    raise KeyboardInterrupt
-                drawn += 1
-                on_progress(drawn, frames)
+        drawn = run_browsers(_draw_frames(page, duration, parameters, Path(folder), on_progress, interrupted))
+        if interrupted():
+            raise KeyboardInterrupt
         write_whole(output, partial(_encode, ffmpeg, Path(folder), parameters.frame_rate))
         if interrupted():
             raise KeyboardInterrupt
     return drawn
 
 
-def _draw_frames(page: Path, duration: float, parameters: VideoParameters, folder: Path) -> Generator[int]:
-    """Draw every frame into a file of a folder, in one browser per core; yields the number of frames after each."""
-    ended: Queue[int | Exception | None] = Queue()
-    stop = Event()
-    # Made once, before threads need it.
-    content_policy()
+async def _draw_frames(
+    page: Path,
+    duration: float,
+    parameters: VideoParameters,
+    folder: Path,
+    on_progress: Callable[[int, int], None],
+    interrupted: Callable[[], bool],
+) -> int:
+    """Draw every frame into a file of a folder, in one browser per core; returns the number of frames.
+
+    It ends early once `interrupted` is true.
+    """
     expected = len(parameters.times(duration))
     browsers = max(1, min(cpu_count() or 1, MAX_BROWSERS, expected // MIN_FRAMES_PER_BROWSER))
+    drawn = 0
 
-    def draw(browser: int) -> None:
-        try:
-            with open_stage(page, parameters.width, parameters.height, duration) as stage:
-                times = parameters.times(stage.duration)
-                for number in range(browser, len(times), browsers):
-                    if stop.is_set():
-                        break
-                    still = stage.still(times[number], camera(parameters.view, times[number]))
-                    (folder / FRAME.format(number)).write_bytes(still)
-                    ended.put(len(times))
-        except Exception as error:
-            ended.put(error)
-        else:
-            ended.put(None)
+    async def draw(first: int) -> None:
+        nonlocal drawn
+        async with open_stage(page, parameters.width, parameters.height, duration) as stage:
+            times = parameters.times(stage.duration)
+            for number in range(first, len(times), browsers):
+                if interrupted():
+                    return
+                still = await stage.still(times[number], camera(parameters.view, times[number]))
+                (folder / FRAME.format(number)).write_bytes(still)
+                drawn += 1
+                on_progress(drawn, len(times))
 
-    with ThreadPoolExecutor(browsers) as pool:
-        for browser in range(browsers):
-            pool.submit(draw, browser)
-        try:
-            running = browsers
-            while running:
-                match ended.get():
-                    case None:
-                        running -= 1
-                    case Exception() as error:
-                        raise error
-                    case frames:
-                        yield frames
-        finally:
-            stop.set()
+    await asyncio.gather(*map(draw, range(browsers)))
+    return drawn
 
 
 def write_snapshot(
@@ -243,10 +227,11 @@ def write_snapshot(
         times: Times of the stills [s].
         width, height: Size of one still in pixels.
         view: Camera; `orbit` turns from one still to the next.
-        on_progress: Called with the number of rendered stills, and of all stills.
+        on_progress: Called with the number of rendered stills, and of all stills, in the thread that draws.
 
     Raises:
         ParameterError: No run or replay, a time outside it, a suffix other than .png, or missing programs.
+        KeyboardInterrupt: Ctrl-C; nothing is written.
     """
     opened = Run.open(run)
     page, duration = opened.replay, replay_duration(opened.summary)
@@ -260,16 +245,26 @@ def write_snapshot(
         raise ParameterError(f"--times: {len(times)} stills of {width}x{height}; allowed: up to {most}; remove some")
     make_folder(output.parent)
     strip = Image.new("RGB", (len(times) * (width + STRIP_GAP) - STRIP_GAP, height + STRIP_LABEL), "white")
-    draw = ImageDraw.Draw(strip)
+    label = ImageDraw.Draw(strip)
     font = ImageFont.load_default(18)
-    with open_stage(page, width, height, duration) as stage:
-        for time in times:
-            require_in_range("--times", time, "s", 0.0, stage.duration, other_units=False)
-        for place, time in enumerate(times):
-            left = place * (width + STRIP_GAP)
-            strip.paste(Image.open(io.BytesIO(stage.still(time, camera(view, time), "png"))), (left, 0))
-            draw.text((left + width / 2, height + STRIP_LABEL / 2), f"{time:g} s", "#202020", font, anchor="mm")
-            on_progress(place + 1, len(times))
+
+    async def draw(interrupted: Callable[[], bool]) -> None:
+        async with open_stage(page, width, height, duration) as stage:
+            for time in times:
+                require_in_range("--times", time, "s", 0.0, stage.duration, other_units=False)
+            for place, time in enumerate(times):
+                if interrupted():
+                    return
+                left = place * (width + STRIP_GAP)
+                still = await stage.still(time, camera(view, time), "png")
+                strip.paste(Image.open(io.BytesIO(still)), (left, 0))
+                label.text((left + width / 2, height + STRIP_LABEL / 2), f"{time:g} s", "#202020", font, anchor="mm")
+                on_progress(place + 1, len(times))
+
+    with between_frames() as interrupted:
+        run_browsers(draw(interrupted))
+        if interrupted():
+            raise KeyboardInterrupt
     write_whole(output, lambda beside: strip.save(beside, optimize=True))
 
 

@@ -1,3 +1,5 @@
+import asyncio
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -20,6 +22,13 @@ def browser() -> None:
     pytest.importorskip("imageio_ffmpeg")
     if find_browser() is None:
         pytest.skip("no Chromium or Chrome on the PATH or in $CHROMIUM")
+
+
+@pytest.fixture(scope="module")
+def loop() -> Iterator[asyncio.Runner]:
+    """Runs coroutines of one browser, one after the other."""
+    with asyncio.Runner() as runner:
+        yield runner
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ import pytest
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.run.folder import Run
 from humanwalk.run.reproduce import reproduce
-from humanwalk.view.browser import MESA, RENDERING, find_browser, has_sandbox
+from humanwalk.view.browser import RENDERING, launch_options
 
 pytestmark = pytest.mark.browser
 
@@ -66,12 +66,7 @@ def tab(drive: Any) -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(
-            executable_path=find_browser(),
-            args=RENDERING,
-            env={**os.environ, **MESA},
-            chromium_sandbox=has_sandbox(),
-        )
+        chromium = playwright.chromium.launch(**launch_options(RENDERING))
         tab = chromium.new_page(viewport={"width": 400, "height": 720})
         tab.set_default_timeout(1000.0 * PATIENCE)
         tab.goto(drive[1])

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from humanwalk.view.browser import open_browser
+from humanwalk.view.browser import launch_options
 from humanwalk.view.replay import safe_page
 from humanwalk.view.samples import CHANNELS
 from humanwalk.view.views import FIXED
@@ -40,8 +40,12 @@ def opened(browser: Any, pages: Any, complaints: list[str]) -> Any:
 
 @pytest.fixture(scope="module")
 def chromium(short_run: Any) -> Iterator[Any]:
-    with open_browser() as browser:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(**launch_options())
         yield browser
+        browser.close()
 
 
 @pytest.fixture(scope="module")

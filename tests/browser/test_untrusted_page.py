@@ -1,5 +1,6 @@
 """A replay page that somebody else made reaches no network while it is rendered, and claims no duration of its own."""
 
+import asyncio
 import base64
 import json
 import socket
@@ -176,53 +177,58 @@ def hostile_page(short_run: Any, tmp_path: Path) -> Any:
     return write
 
 
-def test_hostile_page_is_rendered_without_a_byte_to_the_network(hostile_page: Any) -> None:
-    with listener() as (port, seen):
-        with open_stage(hostile_page(port), WIDTH, HEIGHT, 0.5) as stage:
+def test_hostile_page_is_rendered_without_a_byte_to_the_network(hostile_page: Any, loop: Any) -> None:
+    async def render(page: Path) -> list[str]:
+        async with open_stage(page, WIDTH, HEIGHT, 0.5) as stage:
             assert stage.duration == pytest.approx(0.5)
             for time in (0.0, 0.25, 0.5):
-                assert stage.still(time, camera("side", time))
-            stage._page.wait_for_timeout(1000.0)
+                assert await stage.still(time, camera("side", time))
+            await asyncio.sleep(1.0)
+        return stage.complaints
+
+    with listener() as (port, seen):
+        complaints = loop.run(render(hostile_page(port)))
         assert seen == []
         # Neither did any script of the page get as far as a request that was blocked.
-        assert [text for text in stage.complaints if "/fetch" in text or "/beacon" in text] == []
+        assert [text for text in complaints if "/fetch" in text or "/beacon" in text] == []
 
 
-def test_browser_has_no_network_even_for_scripts_that_run(hostile_page: Any) -> None:
+def test_browser_has_no_network_even_for_scripts_that_run(hostile_page: Any, loop: Any) -> None:
+    async def attempted_requests(page: Path) -> list[str]:
+        attempts = []
+        async with open_browser() as browser:
+            tab = await browser.new_page()
+            tab.on("request", lambda request: attempts.append(request.url))
+            await tab.goto(page.as_uri())
+            await asyncio.sleep(3.0)
+        return attempts
+
     with listener() as (port, seen):
         # The listener works.
         socket.create_connection(("127.0.0.1", port)).close()
-        with open_browser() as browser:
-            tab = browser.new_page()
-            attempts = []
-            tab.on("request", lambda request: attempts.append(request.url))
-            tab.goto(hostile_page(port).as_uri())
-            tab.wait_for_timeout(3000.0)
+        attempts = loop.run(attempted_requests(hostile_page(port)))
         for target in ("fetch", "image", "img", "navigation"):
             assert f"http://127.0.0.1:{port}/{target}" in attempts
         assert [data for data in seen if data != b""] == []
 
 
 @pytest.mark.parametrize("duration", [1e9, float("inf"), float("nan"), -1.0, 0.6])
-def test_duration_beyond_that_of_the_run_is_refused(short_run: Any, tmp_path: Path, duration: float) -> None:
+def test_duration_beyond_that_of_the_run_is_refused(short_run: Any, loop: Any, tmp_path: Path, duration: float) -> None:
     page = tmp_path / "page.html"
     recording = json.dumps([base64.b64encode(packed(animation(duration))).decode()])
     page.write_text(RECORDING.sub(f"{RECORDING_TAG}{recording}</script>", short_run.replay.read_text(encoding="utf-8")))
-    with (
-        pytest.raises(ParameterError, match=r"page\.html: .*allowed: up to 0\.5 s") as error,
-        open_stage(page, WIDTH, HEIGHT, 0.5),
-    ):
-        pass
+    with pytest.raises(ParameterError, match=r"page\.html: .*allowed: up to 0\.5 s") as error:
+        loop.run(open_stage(page, WIDTH, HEIGHT, 0.5).__aenter__())
     assert str(error.value).isprintable()
 
 
 @pytest.mark.parametrize(
     "command", [b"\xc1", b"\xdf\xff\xff\xff\xff", packed({"type": "set_object", "path": "/a"}), b""]
 )
-def test_broken_recording_produces_a_one_line_error(short_run: Any, tmp_path: Path, command: Any) -> None:
+def test_broken_recording_produces_a_one_line_error(short_run: Any, loop: Any, tmp_path: Path, command: Any) -> None:
     page = tmp_path / "page.html"
     recording = json.dumps([base64.b64encode(command).decode() or "AAAA"])
     page.write_text(RECORDING.sub(f"{RECORDING_TAG}{recording}</script>", short_run.replay.read_text(encoding="utf-8")))
-    with pytest.raises(ParameterError, match=r"page\.html: ") as error, open_stage(page, WIDTH, HEIGHT, 0.5):
-        pass
+    with pytest.raises(ParameterError, match=r"page\.html: ") as error:
+        loop.run(open_stage(page, WIDTH, HEIGHT, 0.5).__aenter__())
     assert str(error.value).isprintable()

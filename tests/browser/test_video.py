@@ -1,4 +1,5 @@
 import hashlib
+import os
 import signal
 import subprocess
 from pathlib import Path
@@ -56,7 +57,7 @@ def test_a_gif_or_webp_has_every_frame_and_loops(short_run: Any, tmp_path: Path,
 def test_ctrl_c_leaves_no_file(short_run: Any, tmp_path: Path) -> None:
     def press(done: Any, frames: Any) -> None:
         if done == 2:
-            signal.raise_signal(signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
         record_video(short_run.path, tmp_path / "walk.mp4", SMALL, press)

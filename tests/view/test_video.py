@@ -8,7 +8,7 @@ import pytest
 
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import REPLAY
-from humanwalk.view.browser import find_browser, has_sandbox, open_browser
+from humanwalk.view.browser import find_browser, has_sandbox, open_browser, run_browsers
 from humanwalk.view.video import VideoParameters, find_ffmpeg, parse_size, parse_times, record_video
 from humanwalk.view.views import camera
 
@@ -93,7 +93,7 @@ def test_a_run_without_replay_is_refused(run: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("module", "need"), [("playwright.sync_api", "playwright"), ("imageio_ffmpeg", "imageio-ffmpeg")]
+    ("module", "need"), [("playwright.async_api", "playwright"), ("imageio_ffmpeg", "imageio-ffmpeg")]
 )
 def test_missing_package_produces_an_error_with_the_command(
     run: Path, monkeypatch: pytest.MonkeyPatch, module: str, need: str
@@ -101,8 +101,7 @@ def test_missing_package_produces_an_error_with_the_command(
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ParameterError, match=rf"{need}: not installed.*pip install -e '\.\[video\]'"):
         if need == "playwright":
-            with open_browser():
-                pass
+            run_browsers(open_browser().__aenter__())
         else:
             find_ffmpeg()
 
