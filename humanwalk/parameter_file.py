@@ -217,13 +217,18 @@ def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
     return dict(fields_of(kind))
 
 
-def _build(kind: Any, value: Any, place: _Place) -> Any:
-    """`value` out of a YAML file as an instance of the annotated type `kind`."""
+def _build(kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
+    """`value` out of a YAML file as an instance of the annotated type `kind`.
+
+    Fields that a group does not have are those of `default`, if that is such a group, else the defaults of its type.
+    """
     origin = typing.get_origin(kind)
     if kind is Any:
         return _build_any(value, place)
     if dataclasses.is_dataclass(kind):
-        return _build_dataclass(kind, value, place)
+        has_default = dataclasses.is_dataclass(default)
+        make: Any = functools.partial(dataclasses.replace, default) if has_default else kind
+        return _made(make, kind, value, place, default if has_default else None)
     if origin is Literal:
         choices = typing.get_args(kind)
         if value not in choices:
@@ -252,12 +257,8 @@ def _entries(value: Any, place: _Place) -> list[tuple[Any, _Place]]:
     return [(entry, place / str(i)) for i, entry in enumerate(value)]
 
 
-def _build_dataclass(kind: Any, value: Any, place: _Place) -> Any:
-    return _made(kind, kind, value, place)
-
-
-def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place) -> Any:
-    """What `make` returns for the fields of a dataclass that a mapping has."""
+def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
+    """What `make` returns for the fields of a dataclass that a mapping has; see `_build` for `default`."""
     fields = {field.name: field for field in dataclasses.fields(kind)}
     if not isinstance(value, dict):
         raise ParameterError(f"{place}: {shown(value)} is not a group of fields; allowed: {', '.join(fields)}")
@@ -283,7 +284,8 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place) -> Any
                 _build_choice(metadata["choice_list"], item, at) for item, at in _entries(entry, place / name)
             )
         else:
-            arguments[key] = _build(hints[key], entry, place / name)
+            group = fields[key].default if default is None else getattr(default, key)
+            arguments[key] = _build(hints[key], entry, place / name, group)
     try:
         return make(**arguments)
     except ParameterError as error:

@@ -109,6 +109,17 @@ def test_override_replaces_one_field_and_keeps_its_neighbours() -> None:
     assert (path.step_length, path.step_height) == (0.4, 0.15)
 
 
+@pytest.mark.parametrize("task", ["heel_off", "pelvis", "stance"])
+def test_fields_beside_the_one_of_a_file_keep_the_defaults_of_the_group_that_they_belong_to(task: str) -> None:
+    """`heel_off` has other gains than a `TaskGains` by itself."""
+    key = f"controller.balanced.whole_body.{task}"
+    default = getattr(BalancedController().whole_body, task)
+    expected = dataclasses.replace(default, weight=7.0)
+    for scenario in (load_scenario("walk", {f"{key}.weight": "7"}), load_scenario("walk", {key: "{weight: 7}"})):
+        assert isinstance(scenario.controller, BalancedController)
+        assert getattr(scenario.controller.whole_body, task) == expected
+
+
 def test_override_reaches_into_a_choice_that_stands_as_its_tag() -> None:
     walk = parse_scenario("controller: balanced", {"controller.balanced.control_period": "0.006"})
     assert walk.controller == BalancedController(control_period=0.006)
