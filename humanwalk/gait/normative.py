@@ -22,6 +22,11 @@ CYCLE = np.linspace(0.0, 100.0, 101)
 
 PEOPLE_DATA = "models/normative_gait/schwartz2008_slow_free_fast.csv"
 
+PEOPLE_LEG = 0.75
+"""Leg length of the people [m]. The source's children are 4 to 17 years old; this is the leg of one of 10.5 years and
+1.41 m, with the share of the stature that it has in our adults (docs/likeness.md, "What is measured, and what is not").
+"""
+
 SpeedGroup = Literal["slow", "free", "fast"]
 
 SPEED_GROUPS: dict[SpeedGroup, tuple[float, float]] = {
@@ -56,6 +61,19 @@ def people(quantity: str, group: SpeedGroup) -> Band:
     ]
     cycle, mean, sd = (np.array([float(row[key]) for row in rows]) for key in ("gait_cycle_percent", "mean", "sd"))
     return Band(np.interp(CYCLE, cycle, mean), np.interp(CYCLE, cycle, sd))
+
+
+def moment_scale(leg: float) -> float:
+    """Factor from people's moments per body mass to those of dynamically similar bodies with a leg length [m].
+
+    Moments are in proportion to body weight times leg length (Hof 1996).
+    """
+    return leg / PEOPLE_LEG
+
+
+def power_scale(leg: float) -> float:
+    """The same for powers: in proportion to body weight times sqrt(g leg length)."""
+    return math.sqrt(leg / PEOPLE_LEG)
 
 
 def dimensionless_speed(speed: float, leg: float) -> float:

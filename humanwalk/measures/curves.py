@@ -16,7 +16,7 @@ import pyarrow as pa
 from humanwalk.body import Side
 from humanwalk.body.limbs import LEGS, Leg
 from humanwalk.body.pelvic_plane import PELVIC_TILT
-from humanwalk.gait.normative import CYCLE, Band, SpeedGroup, people
+from humanwalk.gait.normative import CYCLE, PEOPLE_LEG, Band, SpeedGroup, moment_scale, people, power_scale
 from humanwalk.measures.events import FootEvents
 from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
 from humanwalk.numerics import Array
@@ -45,6 +45,7 @@ class Curve:
         quantity: its name in the human data.
         of: the values of a record relative to one leg, with the body mass [kg], shape (rows,).
         people_scale: factor from the unit of the human data to `unit`.
+        leg_scale: factor from the people of the human data to dynamically similar bodies with a leg length [m].
     """
 
     positive: str
@@ -52,11 +53,12 @@ class Curve:
     quantity: str
     of: Callable[[pa.Table, Side, float], Array]
     people_scale: float = 1.0
+    leg_scale: Callable[[float], float] = lambda leg: 1.0
 
-    def people(self, group: SpeedGroup) -> Band:
-        """People's curve in this unit."""
-        band = people(self.quantity, group)
-        return Band(self.people_scale * band.mean, self.people_scale * band.sd)
+    def people(self, group: SpeedGroup, leg: float = PEOPLE_LEG) -> Band:
+        """People's curve in this unit, for a leg length [m]."""
+        band, scale = people(self.quantity, group), self.people_scale * self.leg_scale(leg)
+        return Band(scale * band.mean, scale * band.sd)
 
 
 def _joint(
@@ -109,7 +111,7 @@ after its others: both angles of the pelvic plane are those of the pelvis frame 
 
 MOMENTS = {
     f"{joint} moment": Curve(
-        positive, "N m/kg", f"{joint}_{quantity}_moment_Nmm_per_kg", partial(_moment, joint), people_scale=1e-3
+        positive, "N m/kg", f"{joint}_{quantity}_moment_Nmm_per_kg", partial(_moment, joint), 1e-3, moment_scale
     )
     for joint, positive, quantity in (
         ("hip", "extensor", "extensor"),
@@ -120,7 +122,10 @@ MOMENTS = {
 """Internal moments of the sagittal joints by name."""
 
 POWERS = {
-    f"{joint} power": Curve("delivered", "W/kg", f"{joint}_power_W_per_kg", partial(_power, joint)) for joint in JOINTS
+    f"{joint} power": Curve(
+        "delivered", "W/kg", f"{joint}_power_W_per_kg", partial(_power, joint), leg_scale=power_scale
+    )
+    for joint in JOINTS
 }
 """Powers of the sagittal joints by name."""
 

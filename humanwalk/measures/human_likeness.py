@@ -1,7 +1,8 @@
 """Comparison with human gait, stride by stride: angles, moments and powers over the gait cycle, and single measures.
 
-People's curves are those of `humanwalk.gait.normative` at the dimensionless speed of the walk. Other measures have
-human values where a source is known (`humanwalk.measures.walk_measures`).
+People's curves are those of `humanwalk.gait.normative` at the dimensionless speed of the walk; their moments and powers
+are scaled to its leg length. Other measures have human values where a source is known
+(`humanwalk.measures.walk_measures`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -123,17 +124,20 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
     """
     walk = Walk.of(signals, scenario)
     _require_walk(walk)
+    pace = walk.pace
     curves = {
         name: {
-            side: Likeness.of(over_strides(foot, curve.of(signals, side, walk.mass)), curve.people(walk.pace.group))
+            side: Likeness.of(
+                over_strides(foot, curve.of(signals, side, walk.mass)), curve.people(pace.group, pace.leg)
+            )
             for side, foot in walk.feet.items()
         }
         for name, curve in CURVES.items()
     }
     return Comparison(
         strides={side: len(foot.strides) for side, foot in walk.feet.items()},
-        dimensionless_speed=walk.pace.dimensionless,
-        group=walk.pace.group,
+        dimensionless_speed=pace.dimensionless,
+        group=pace.group,
         curves=curves,
         measures=tuple(kind.of_walk(walk) for kind in MEASURES),
         asymmetries=asymmetries(walk),

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.gait.normative import SPEED_GROUPS, dimensionless_speed, is_measured, speed_group
-from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS
+from humanwalk.gait.normative import PEOPLE_LEG, SPEED_GROUPS, dimensionless_speed, is_measured, speed_group
+from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS, POWERS
 
 
 @pytest.mark.parametrize("group", SPEED_GROUPS)
@@ -41,6 +41,17 @@ def test_the_pelvic_plane_of_people_leans_forward() -> None:
 def test_moments_are_in_newton_meters_per_kilogram() -> None:
     for curve in MOMENTS.values():
         assert 0.1 < np.abs(curve.people("free").mean).max() < 2.0
+
+
+@given(leg=st.floats(0.5, 1.1))
+def test_moments_and_powers_are_those_of_dynamically_similar_bodies(leg: float) -> None:
+    """Per body mass, moments are in proportion to the leg length, powers to its square root; angles are the same."""
+    for name, curve in CURVES.items():
+        exponent = 1.0 if name in MOMENTS else 0.5 if name in POWERS else 0.0
+        scaled, people = curve.people("free", leg), curve.people("free")
+        factor = (leg / PEOPLE_LEG) ** exponent
+        assert scaled.mean == pytest.approx(factor * people.mean), name
+        assert scaled.sd == pytest.approx(factor * people.sd), name
 
 
 @given(froude=st.floats(0.0, 2.0))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.body import SIDES
+from humanwalk.body import SIDES, human
 from humanwalk.body.limbs import LEGS
 from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import ANGLES, CURVES, JOINTS, over_strides
@@ -92,16 +92,17 @@ def test_inside_is_within_one_and_two_standard_deviations(
     assert likeness.distance[0] == pytest.approx(abs(share))
 
 
-def kinetics_of_people() -> dict[str, Array]:
-    """Torques and rates of both legs whose moments and powers are people's at a free speed."""
+LEG = human().hip_height
+
+
+def kinetics_of_people(leg: float) -> dict[str, Array]:
+    """Torques and rates of both legs whose moments and powers are people's at a free speed, for a leg length [m]."""
     time = 0.005 * np.arange(1601)
     columns = {}
     for side, lag in zip(SIDES, (0.0, 0.5), strict=True):
         for name, joint in JOINTS.items():
-            moment, power = (
-                np.interp(100.0 * ((time / STRIDE - lag) % 1.0), CYCLE, CURVES[f"{name} {what}"].people("free").mean)
-                for what in ("moment", "power")
-            )
+            people = (CURVES[f"{name} {what}"].people("free", leg).mean for what in ("moment", "power"))
+            moment, power = (np.interp(100.0 * ((time / STRIDE - lag) % 1.0), CYCLE, mean) for mean in people)
             # A rate of 0.1 rad/s where there is no moment.
             moment = np.where(np.abs(moment) < 1e-3, 1e-3, moment)
             columns[f"{joint(LEGS[side])}.torque_N_m"] = -MASS * moment
@@ -110,7 +111,7 @@ def kinetics_of_people() -> dict[str, Array]:
 
 
 def test_walk_with_the_mean_curves_of_people_scores_one(walk: Callable[..., Any], scenario: Scenario) -> None:
-    comparison = compare(walk(**kinetics_of_people()), scenario)
+    comparison = compare(walk(**kinetics_of_people(LEG)), scenario)
     assert comparison.group == "free"
     assert comparison.score == 1.0
     assert comparison.distance < 0.1
@@ -121,7 +122,7 @@ def test_walk_with_the_mean_curves_of_people_scores_one(walk: Callable[..., Any]
 
 def test_score_is_the_mean_of_the_nine_curves(walk: Callable[..., Any], scenario: Scenario) -> None:
     """One joint of one leg without torque: its moment and power leave people's bands."""
-    kinetics = kinetics_of_people()
+    kinetics = kinetics_of_people(LEG)
     kinetics["LeftLegAnkleMotion.torque_N_m"] *= 0.0
     comparison = compare(walk(**kinetics), scenario)
     lost = [1.0 - pooled(comparison.curves[f"ankle {what}"], "inside").mean() for what in ("moment", "power")]
@@ -131,7 +132,7 @@ def test_score_is_the_mean_of_the_nine_curves(walk: Callable[..., Any], scenario
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_power_is_moment_times_speed_of_extension(walk: Callable[..., Any], joint: str) -> None:
-    signals = walk(**kinetics_of_people())
+    signals = walk(**kinetics_of_people(LEG))
     rate = signals[f"{JOINTS[joint](LEGS['Left'])}.velocity_rad_s"].to_numpy()
     moment, power = (CURVES[f"{joint} {what}"].of(signals, "Left", MASS) for what in ("moment", "power"))
     np.testing.assert_allclose(power, moment * -rate, atol=1e-12)

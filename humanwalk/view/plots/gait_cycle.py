@@ -63,7 +63,7 @@ def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
     figure = new_figure(title, height=2.7, columns=3, sharex=True)
     for axes, name in zip(figure.axes, names, strict=True):
         shown = CURVES[name]
-        band = shown.people(walk.pace.group)
+        band = shown.people(walk.pace.group, walk.pace.leg)
         text = f"human, {walk.pace.group} speed"
         axes.fill_between(CYCLE, band.mean - band.sd, band.mean + band.sd, color=PEOPLE, linewidth=0, label=text)
         curve(axes, CYCLE, band.mean, color=PEOPLE_LINE, linewidth=0.9, linestyle="--")
