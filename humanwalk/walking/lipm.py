@@ -49,9 +49,9 @@ class ZmpSegment(NamedTuple):
             return self.end
         return self.start + (self.end - self.start) * min(max(t / self.duration, 0.0), 1.0)
 
-    def moved(self, by: complex) -> ZmpSegment:
-        """The segment at another place."""
-        return ZmpSegment(self.start + by, self.end + by, self.duration)
+    def moved(self, by: complex, direction: complex = 1.0) -> ZmpSegment:
+        """The segment turned into a direction, a unit vector, and moved."""
+        return ZmpSegment(direction * self.start + by, direction * self.end + by, self.duration)
 
     def remainder(self, t: float) -> ZmpSegment:
         """The part of the segment from t [s] after the start."""
@@ -128,7 +128,7 @@ class PeriodicGait(NamedTuple):
         roll: Displacement of the zero-moment point in single support [m].
         double_support, single_support: Durations [s].
         pivot: Greatest distance of the centroidal moment pivot from the zero-moment point [m].
-        hold: Last part of single support, in which the pivot does not move any more [s].
+        hold: Last part of single support, in which the zero-moment point does not move any more [s].
     """
 
     displacement: PerStance
@@ -149,13 +149,20 @@ class PeriodicGait(NamedTuple):
         old_end = (self.pivot_end - self.displacement.on(other_side(stance))) * cmath.exp(-1j * self.turn)
         return (
             ZmpSegment(old_end, -self.pivot, self.double_support),
-            *self.along_foot(-self.pivot, self.pivot_end),
+            *self.along_foot,
         )
 
-    def along_foot(self, start: complex, end: complex) -> tuple[ZmpSegment, ...]:
-        """The centroidal moment pivot in single support, from where it begins to where it ends [m]."""
-        rolling = ZmpSegment(start, end, self.single_support - self.hold)
-        return (rolling, ZmpSegment(end, end, self.hold)) if self.hold > 0.0 else (rolling,)
+    @property
+    def along_foot(self) -> tuple[ZmpSegment, ...]:
+        """The centroidal moment pivot in single support."""
+        if self.hold <= 0.0:
+            return (ZmpSegment(-self.pivot, self.pivot_end, self.single_support),)
+        # Where the zero-moment point stops, the pivot still has to move on by what is left of its way.
+        held = self.pivot_end - 2.0 * self.pivot * self.hold / self.single_support
+        return (
+            ZmpSegment(-self.pivot, held, self.single_support - self.hold),
+            ZmpSegment(held, self.pivot_end, self.hold),
+        )
 
     def end_offsets(self, frequency: float) -> PerStance:
         """DCM at the end of each step, for which the walk is periodic.

@@ -28,7 +28,7 @@ def desired_gait(
         descent: How much of a step down its steps are, 0 to 1: in these the pivot is ahead of the ball while the heel
             is up.
     """
-    timing, placement = state.timing, parameters.placement
+    timing, placement, rockers = state.timing, parameters.placement, parameters.rockers
     move = (command.velocity + state.path_correction) * timing.step
     turn = state.turn * timing.step
     # In a sideways walk, every other step is narrower by the sideways displacement.
@@ -46,7 +46,8 @@ def desired_gait(
         single_support=timing.single_support,
         # With the heel up before a step down the pivot stays where `descent` puts it.
         pivot=(1.0 - descent) * parameters.support.pivot * max(command.forward, 0.0),
-        hold=min(descent * parameters.rockers.descent, timing.single_support),
+        # While the heel is up the ball is all that the foot stands on.
+        hold=min((1.0 - descent) * rockers.lead(command.forward) + descent * rockers.descent, timing.single_support),
     )
 
 
@@ -56,13 +57,12 @@ def remaining_pivot(
     """The nominal centroidal moment pivot to the end of the step, over the feet as they stand [m]."""
     timing, support = state.timing, parameters.support
     stance = support.center_of(state.stance_foot.position, state.heading)
-    start, end = stance - gait.pivot * state.direction, stance + gait.pivot_end * state.direction
-    single = gait.along_foot(start, end)
+    single = tuple(segment.moved(stance, state.direction) for segment in gait.along_foot)
     if state.phase is Phase.SINGLE_SUPPORT:
         return remainder(single, state.elapsed - timing.double_support)
     old = support.center_of(state.old_foot.position, state.old_heading)
     old_end = old + gait.pivot_end * cmath.exp(1j * state.old_heading)
-    return (ZmpSegment(old_end, start, timing.double_support).remainder(state.elapsed), *single)
+    return (ZmpSegment(old_end, single[0].start, timing.double_support).remainder(state.elapsed), *single)
 
 
 def pivot_lead(state: PlannerState, gait: PeriodicGait) -> complex:

@@ -131,12 +131,24 @@ def test_the_dcm_at_the_end_of_a_step_leads_into_the_gait_that_follows(
 
 
 @given(gaits)
-def test_the_pivot_does_not_move_in_the_last_part_of_single_support(gait: PeriodicGait) -> None:
+def test_the_zero_moment_point_does_not_move_in_the_last_part_of_single_support(gait: PeriodicGait) -> None:
     _, *single = gait.segments("Left")
     assert sum(segment.duration for segment in single) == pytest.approx(gait.single_support)
     assert single[-1].end == gait.pivot_end
     if gait.hold > 0.0:
-        assert single[-1] == ZmpSegment(gait.pivot_end, gait.pivot_end, gait.hold)
+        assert single[-1].duration == gait.hold
+        # The distance of the pivot from the zero-moment point grows from -pivot to pivot at a constant rate.
+        distance = gait.pivot * (1.0 - 2.0 * gait.hold / gait.single_support)
+        assert single[-1].start - distance == pytest.approx(gait.roll)
+        assert single[-1].end - gait.pivot == pytest.approx(gait.roll)
+
+
+@given(st.builds(ZmpSegment, points, points, st.floats(0.05, 0.6)), points, st.floats(-3.0, 3.0), st.floats(0.0, 1.0))
+def test_a_moved_segment_is_a_point_of_the_segment_moved(
+    segment: ZmpSegment, by: complex, heading: float, fraction: float
+) -> None:
+    direction, t = cmath.exp(1j * heading), fraction * segment.duration
+    assert segment.moved(by, direction).at(t) == pytest.approx(by + direction * segment.at(t))
 
 
 @given(st.lists(segments, min_size=1, max_size=3), st.floats(0.0, 3.0), points, frequencies)
