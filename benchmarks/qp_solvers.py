@@ -17,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 import piqp
 from proxsuite import proxqp
-from scipy.linalg import block_diag
 
 from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.run.simulate import simulate
@@ -31,7 +30,7 @@ def programs_of_a_walk(duration: float) -> list[QuadraticProgram]:
     programs: list[QuadraticProgram] = []
     solution = QuadraticProgram.solution
 
-    def record(self: QuadraticProgram) -> tuple[Array, Array] | None:
+    def record(self: QuadraticProgram) -> Array | None:
         programs.append(self)
         return solution(self)
 
@@ -44,10 +43,8 @@ def programs_of_a_walk(duration: float) -> list[QuadraticProgram]:
 
 
 def parts(program: QuadraticProgram) -> tuple[Array, ...]:
-    """H, g, A, b, C, lower, upper, x_lower, x_upper of x = (f, a): equations and inequalities apart."""
-    k, lower, upper = program.B.shape[1], program.lower, program.upper
-    H, g = block_diag(np.eye(k), program.H), np.concatenate((np.zeros(k), program.g))
-    A = np.hstack((program.B, program.A))
+    """H, g, A, b, C, lower, upper, x_lower, x_upper: equations and inequalities apart."""
+    H, g, A, lower, upper = program
     x, rows = slice(0, g.size), slice(g.size, None)
     equation = lower[rows] == upper[rows]
     row_bounds = (A[~equation], lower[rows][~equation], upper[rows][~equation])
@@ -55,8 +52,7 @@ def parts(program: QuadraticProgram) -> tuple[Array, ...]:
 
 
 def with_daqp(program: QuadraticProgram) -> Array | None:
-    solution = program.solution()
-    return None if solution is None else np.concatenate(solution[::-1])
+    return program.solution()
 
 
 def with_piqp(tolerance: float) -> Solve:

@@ -21,8 +21,8 @@ from humanwalk.walking.walking_reference import FootTask, WalkingReference
 EDGES = 4
 """Number of edges of a friction pyramid."""
 
-MAX_LEAN = 0.45
-"""Largest slope of the cheapest force per friction coefficient (our choice); with 0.5 an edge would have no length."""
+MIN_LOAD = 0.01
+"""Smallest load by which the cost of a force is divided (our choice)."""
 
 
 @dataclass(frozen=True)
@@ -119,11 +119,10 @@ class SolesOnGround(NamedTuple):
         J_points = J[:, 3:] - cross_matrix(self.r_W[points]) @ J[:, :3]
         mu = np.minimum(p.friction, p.friction_use * self.friction[points])
         R_SW = self.R_SW[points]
-        to_com_S = np.matvec(R_SW, body.com.position - body.X_WB[under, :, 3] - self.r_W[points])
-        slope = p.force_direction * to_com_S[:, :2] / to_com_S[:, 2:]
-        edges_W = leaning_edges(mu, p.force_unit, slope) @ R_SW
+        share = np.maximum(load[points], MIN_LOAD)
+        edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
         J_edges = edges_W @ J_points
-        return Contacts(points, load[points], edges_W, J_edges.reshape(-1, J.shape[-1]))
+        return Contacts(points, load[points] / np.sqrt(share), edges_W, J_edges.reshape(-1, J.shape[-1]))
 
 
 def friction_edges(mu: Array, unit: float) -> Array:
@@ -138,30 +137,18 @@ def friction_edges(mu: Array, unit: float) -> Array:
     return edges
 
 
-def leaning_edges(mu: Array, unit: float, slope: Array) -> Array:
-    """`friction_edges` of such lengths that the cheapest force leans by a slope, (n, 2).
-
-    An edge with the coefficient s costs s^2. Of the cheapest force with a given third component, each edge then has a
-    share in proportion to the square of its length. Slopes are limited to MAX_LEAN of the friction coefficient.
-    """
-    lean = 2.0 * np.clip(slope / mu[:, None], -MAX_LEAN, MAX_LEAN)
-    squares = 1.0 + np.stack((lean, -lean), axis=2).reshape(-1, EDGES)
-    edges: Array = np.sqrt(squares)[:, :, None] * friction_edges(mu, unit)
-    return edges
-
-
 class Contacts(NamedTuple):
     """The points that can carry a force, c of them.
 
     Attributes:
         points: indices of the points, (c,).
-        load: share of its strength that the reference allows for each, (c,).
+        max_share: largest force along each edge, per length of the edge and largest force at full load, (c,).
         edges_W: edges of each point's friction pyramid in W, (c, edges, 3).
         J_edges: Jacobian of the velocities along all edges, (c x edges, nv).
     """
 
     points: Indices
-    load: Array
+    max_share: Array
     edges_W: Array
     J_edges: Array
 

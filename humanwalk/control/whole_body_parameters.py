@@ -111,10 +111,10 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    force_direction: float = quantity(1.0, "", 0.0, 1.0)
-    """How far the cheapest force of a point leans from the normal of the ground, 0, toward the center of mass, 1. It
-    matters where the tasks leave the forces free: in double support, with 1, the foot behind pushes and the one ahead
-    brakes, as in people (docs/likeness.md, "What makes the forces human")."""
+    torque_unit: float = quantity(7.0, "N m", 0.1, 1e6)
+    """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
+    where the tasks leave the torques free: the two legs do not work against each other in double support
+    (docs/likeness.md, "What makes the forces human")."""
 
     max_contact_force: float = quantity(1500.0, "N", 100.0, 1e5)
     """Maximum force along each edge (our choice): twice the weight of the body."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.control.whole_body_contacts import EDGES, Contacts, Soles
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
-from humanwalk.control.whole_body_tasks import Task, tasks
+from humanwalk.control.whole_body_tasks import NO_STYLE, StyleTasks, TorqueTask, tasks
 from humanwalk.numerics import Array
 from humanwalk.walking.walking_reference import WalkingReference
 
@@ -108,36 +108,40 @@ class WholeBodyQp:
         passive = ~locked & (self.limits <= NO_TORQUE)
         self._range[:, passive[: m - 6]] = UNLIMITED
         self._passive_ankles = passive_ankles(dynamics.plant)
+        legs = [6 + self.names.index(joint) for leg in LEGS.values() for joint in leg.chain]
+        self._effort = np.setdiff1d(legs, 6 + np.flatnonzero(locked))
+        """Joints whose torque is an effort, among the velocities: the structure of a locked joint makes none."""
         torque_limits = np.concatenate((np.zeros(6), np.where(locked, LOCKED_TORQUE, self.limits)[: m - 6]))
         self._torque_range = np.array((-torque_limits, torque_limits))
 
     def solve(
-        self, body: Dynamics, reference: WalkingReference, posture: Posture, more: Iterable[Task] = ()
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: StyleTasks = NO_STYLE
     ) -> WholeBodySolution | None:
         """The solution, or None if the solver finds none; see `program`."""
-        program, prescribed, contacts = self.program(body, reference, posture, more)
+        program, prescribed, contacts = self.program(body, reference, posture, style)
         solution = program.solution()
         if solution is None:
             return None
-        acceleration, edge_forces = np.concatenate((solution[0], prescribed)), np.maximum(solution[1], 0.0)
+        edge_forces, acceleration = np.split(solution, [len(contacts.J_edges)])
+        edge_forces, acceleration = np.maximum(edge_forces, 0.0), np.concatenate((acceleration, prescribed))
         torque = body.M @ acceleration + body.h - contacts.J_edges.T @ edge_forces
         forces = np.zeros((self._soles.side.size, 3))
         forces[contacts.points] = contacts.forces(edge_forces)
         return WholeBodySolution(acceleration, forces, np.clip(torque[6:], -self.limits, self.limits))
 
     def program(
-        self, body: Dynamics, reference: WalkingReference, posture: Posture, more: Iterable[Task] = ()
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: StyleTasks = NO_STYLE
     ) -> tuple[QuadraticProgram, Array, Contacts]:
         """The program at one state.
 
-        Its unknowns are the accelerations of base, legs and spine, and the forces along the edges of the friction
-        pyramids.
+        Its unknowns are the k forces along the edges of the friction pyramids, then the m accelerations of base, legs
+        and spine.
 
         Args:
             body: the body at this state.
             reference: plan of the steps.
             posture: desired angles.
-            more: tasks in addition to those of the plan.
+            style: tasks in addition to those of the plan.
 
         Returns:
             The program; the accelerations of the prescribed joints; the contacts.
@@ -147,29 +151,38 @@ class WholeBodyQp:
         desired = self._stiffness * (posture.angle - q) + self._damping * (posture.rate - v)
         desired, prescribed = desired[: m - 6], desired[m - 6 :]
         soles = self._soles.on(reference.ground, body)
+        contacts = soles.contacts(body, reference, p)
+        k = len(contacts.J_edges)
 
-        J, a, w = tasks(body, soles, reference, p, self._passive_ankles, more)
+        # Each force along an edge costs its square.
+        H, g = np.eye(k + m), np.zeros(k + m)
+        J, a, w = tasks(body, soles, reference, p, self._passive_ankles, style.motions)
         a -= J[:, m:] @ prescribed
         J = J[:, :m]
         WJ = w[:, None] * J
-        H = J.T @ WJ + self._regularization
-        g = -a @ WJ
-        g[6:] -= p.rotation_radius**2 * self._weight * desired
+        H[k:, k:] = J.T @ WJ + self._regularization
+        g[k:] = -a @ WJ
+        g[k + 6 :] -= p.rotation_radius**2 * self._weight * desired
 
-        contacts = soles.contacts(body, reference, p)
-        max_force = np.repeat(p.max_contact_force / p.force_unit * contacts.load, EDGES)
+        # The equations of motion: the generalized forces are A (f, v') + load.
+        A, load = np.hstack((-contacts.J_edges[:, :m].T, body.M[:m, :m])), body.h[:m] + body.M[:m, m:] @ prescribed
+        effort = TorqueTask(self._effort, np.zeros(self._effort.size), p.torque_unit**-2)
+        for task in (effort, *style.torques):
+            rows = A[task.joints]
+            H += task.weight * rows.T @ rows
+            g += task.weight * (load[task.joints] - task.torque) @ rows
+
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
         toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]
         low, high = p.joint_limit_acceleration * JOINT_LIMIT_RANGE[:, :, None]
+        max_force = p.max_contact_force / p.force_unit * np.repeat(contacts.max_share, EDGES)
         bounds = (
-            (np.zeros_like(max_force), max_force),
+            (np.zeros(k), max_force),
             UNBOUNDED,
             np.clip(toward_limits, low, high),
-            # The equations of motion M v' + h - J' f = tau: of the base, whose tau is 0, and of the joints.
-            self._torque_range - (body.h[:m] + body.M[:m, m:] @ prescribed),
+            self._torque_range - load,
         )
-        program = QuadraticProgram(H, g, body.M[:m, :m], -contacts.J_edges[:, :m].T, *np.hstack(bounds))
-        return program, prescribed, contacts
+        return QuadraticProgram(H, g, A, *np.hstack(bounds)), prescribed, contacts
 
 
 def _posture_gains(parameters: WholeBodyParameters) -> Mapping[str, TaskGains]:

@@ -1,7 +1,8 @@
-"""Joint angles of both legs over the gait cycle, as smooth periodic functions of phase and speed."""
+"""Joint angles and torques of both legs over the gait cycle, as smooth periodic functions of phase and speed."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import Leg
-from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, people
+from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, moment_scale, people
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 
@@ -17,7 +18,8 @@ HARMONICS = 8
 """Harmonics of the stride that are kept; six hold 99.7 % of the power of a leg's motion (Winter, Sidwall, Hobson 1974,
 J. Biomech. 7(2) 157-159)."""
 
-NORMATIVE = ("hip_flexion_deg", "knee_flexion_deg", "ankle_dorsiflexion_deg")
+ANGLES = ("hip_flexion_deg", "knee_flexion_deg", "ankle_dorsiflexion_deg")
+MOMENTS = tuple(f"{name}_moment_Nmm_per_kg" for name in ("hip_extensor", "knee_extensor", "ankle_plantarflexor"))
 """Human curves of the joints of `styled_joints`."""
 
 
@@ -27,41 +29,41 @@ def styled_joints(leg: Leg) -> tuple[str, str, str]:
 
 
 class PhaseMotion(NamedTuple):
-    """Angles [rad] and their first two derivatives by the phase, shape (3,) each."""
+    """Angles [rad] or torques [N m] and their first two derivatives by the phase, shape (3,) each."""
 
-    angle: Array
+    value: Array
     slope: Array
     curvature: Array
 
 
 @dataclass(frozen=True)
 class GaitCurves:
-    """Fourier series of the sagittal joint angles of both legs, at one or more speeds.
+    """Fourier series of the sagittal joint angles or torques of both legs, at one or more speeds.
 
     Attributes:
         speeds: At which the curves hold [m/s], increasing, shape (n,).
-        coefficients: Complex c_k of angle = Re sum c_k exp(2 pi i k phase), k from 0 to HARMONICS; right leg first;
-            shape (n, HARMONICS + 1, 2, 3) [rad].
+        coefficients: Complex c_k of value = Re sum c_k exp(2 pi i k phase), k from 0 to HARMONICS; right leg first;
+            shape (n, HARMONICS + 1, 2, 3) [rad or N m].
     """
 
     speeds: Array
     coefficients: Array
 
     @staticmethod
-    def through(speeds: Array, angles: Array) -> GaitCurves:
-        """The series nearest to angles over the gait cycle.
+    def through(speeds: Array, values: Array) -> GaitCurves:
+        """The series nearest to values over the gait cycle.
 
         Args:
             speeds: [m/s], increasing, shape (n,).
-            angles: At equal distances of the phase from 0 at a leg's touchdown, without the end of the cycle, shape
-                (n, points, 2, 3) [rad].
+            values: At equal distances of the phase from 0 at a leg's touchdown, without the end of the cycle, shape
+                (n, points, 2, 3) [rad or N m].
         """
-        coefficients = np.fft.rfft(angles, axis=1)[:, : HARMONICS + 1] / angles.shape[1]
+        coefficients = np.fft.rfft(values, axis=1)[:, : HARMONICS + 1] / values.shape[1]
         coefficients[:, 1:] *= 2.0
         return GaitCurves(speeds, coefficients)
 
     def at(self, side: Side, phase: float, speed: float) -> PhaseMotion:
-        """Angles of a leg at its phase, interpolated between the nearest speeds."""
+        """Values of a leg at its phase, interpolated between the nearest speeds."""
         k = np.arange(self.coefficients.shape[1])
         of_leg = self.coefficients[:, :, SIDES.index(side)]
         place = float(np.interp(speed, self.speeds, np.arange(self.speeds.size)))
@@ -79,15 +81,31 @@ class GaitCurves:
 
 
 def normative_curves(leg_length: float, pelvic_tilt: float) -> GaitCurves:
-    """Curves of people at slow, free and fast dimensionless speeds, both legs alike.
+    """Angles of people at slow, free and fast dimensionless speeds, both legs alike.
 
     Args:
         leg_length: Height of the hip joints in standing [m].
         pelvic_tilt: Of the pelvic plane in upright standing, where the model's hips are at 0 [rad].
     """
     zero = np.array((pelvic_tilt, 0.0, 0.0))
-    groups = [np.column_stack([people(name, group).mean for name in NORMATIVE]) for group in SPEED_GROUPS]
+    return _of_people(ANGLES, leg_length, lambda degrees: np.radians(degrees) - zero)
+
+
+def normative_torques(leg_length: float, mass: float) -> GaitCurves:
+    """Torques of people's joints at these speeds, positive in flexion and dorsiflexion.
+
+    Args:
+        leg_length: Height of the hip joints in standing [m].
+        mass: Of the body [kg].
+    """
+    scale = -1e-3 * mass * moment_scale(leg_length)
+    return _of_people(MOMENTS, leg_length, lambda moments: scale * moments)
+
+
+def _of_people(names: Sequence[str], leg_length: float, convert: Callable[[Array], Array]) -> GaitCurves:
+    """Curves of people, converted from the units of the data."""
+    groups = [np.column_stack([people(name, group).mean for name in names]) for group in SPEED_GROUPS]
     # The cycle ends where it begins: the last point repeats the first.
-    angles = np.radians(np.array(groups)[:, : CYCLE.size - 1]) - zero
+    values = convert(np.array(groups)[:, : CYCLE.size - 1])
     speeds = np.sqrt(GRAVITY * leg_length) * np.array([np.mean(ends) for ends in SPEED_GROUPS.values()])
-    return GaitCurves.through(speeds, np.stack((angles, angles), axis=2))
+    return GaitCurves.through(speeds, np.stack((values, values), axis=2))

@@ -1,4 +1,4 @@
-"""Contacts of the whole-body program: edges of friction pyramids, and where the cheapest force points."""
+"""Contacts of the whole-body program: edges of friction pyramids, and the middles of heels and toes."""
 
 import numpy as np
 import pytest
@@ -8,35 +8,17 @@ from hypothesis import strategies as st
 from humanwalk.body import SIDES, contact_spheres
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.skeleton import Skeleton
-from humanwalk.control.whole_body_contacts import MAX_LEAN, Soles, friction_edges, leaning_edges
+from humanwalk.control.whole_body_contacts import Soles, friction_edges
 
 UNIT = 1000.0
 
-coefficients = st.floats(0.05, 1.0)
-slopes = st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 
-
-@given(coefficients, slopes)
-def test_the_cheapest_force_leans_by_the_slope_within_a_share_of_the_friction(
-    mu: float, slope: tuple[float, float]
-) -> None:
-    edges = leaning_edges(np.array([mu]), UNIT, np.array([slope]))[0]
-    # Least squares of the coefficients for a given third component: in proportion to the edges' third components.
-    force = edges[:, 2] @ edges
-    assert force[:2] / force[2] == pytest.approx(np.clip(slope, -MAX_LEAN * mu, MAX_LEAN * mu))
-
-
-@given(coefficients, slopes)
-def test_leaning_edges_have_the_directions_of_the_friction_pyramid(mu: float, slope: tuple[float, float]) -> None:
-    upright = friction_edges(np.array([mu]), UNIT)[0]
-    leaning = leaning_edges(np.array([mu]), UNIT, np.array([slope]))[0]
-    assert leaning / leaning[:, 2:] == pytest.approx(upright / upright[:, 2:])
-    assert (leaning[:, 2] > 0.0).all()
-
-
-def test_edges_without_a_slope_are_those_of_the_friction_pyramid() -> None:
-    mu = np.array([0.3, 0.7])
-    assert (leaning_edges(mu, UNIT, np.zeros((2, 2))) == friction_edges(mu, UNIT)).all()
+@given(st.floats(0.05, 1.0))
+def test_edges_are_those_of_a_friction_pyramid(mu: float) -> None:
+    edges = friction_edges(np.array([mu]), UNIT)[0]
+    assert edges[:, 2] == pytest.approx(UNIT)
+    assert np.hypot(edges[:, 0], edges[:, 1]) == pytest.approx(mu * UNIT)
+    assert edges.sum(axis=0)[:2] == pytest.approx([0.0, 0.0])
 
 
 def test_heels_and_toes_are_in_the_middle_of_their_contact_points(skeleton: Skeleton) -> None:

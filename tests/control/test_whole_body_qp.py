@@ -17,6 +17,7 @@ from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
+from humanwalk.control.whole_body_tasks import StyleTasks, TorqueTask
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.terrain import Plane
@@ -318,26 +319,55 @@ def test_toes_that_extend_no_further_roll_about_their_contact_points(
     assert max(standing) < 1.0
 
 
-def test_forces_that_lean_toward_the_center_of_mass_push_from_behind_and_brake_ahead(
-    dynamics: BodyDynamics, skeleton: Skeleton
-) -> None:
-    """In double support, where the tasks leave the forces along the line between the feet free."""
+def in_double_support(dynamics: BodyDynamics, skeleton: Skeleton) -> Dynamics:
+    """Standing with the right foot ahead of the left one; the heel of the left one is up."""
     joints, apart = dynamics.joints, 0.25
     q = body_at(dynamics).q.copy()
     for leg, sign in ((LEGS["Right"], 1.0), (LEGS["Left"], -1.0)):
         q[joints.q[joints.names.index(leg.hip_flexion)]] += sign * apart
         q[joints.q[joints.names.index(leg.ankle)]] -= sign * apart
     q[6] -= sole_points(dynamics.at(np.concatenate((q, np.zeros(48)))), skeleton)[:, 2].min() + 0.0003
-    body = dynamics.at(np.concatenate((q, np.zeros(48))))
-    upright, leaning = (
-        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, force_direction=share))
-        for share in (0.0, 1.0)
+    return dynamics.at(np.concatenate((q, np.zeros(48))))
+
+
+def test_with_effort_the_legs_do_not_work_against_each_other(dynamics: BodyDynamics, skeleton: Skeleton) -> None:
+    """In double support the tasks leave the forces along the line between the feet free: the foot behind pushes."""
+    body = in_double_support(dynamics, skeleton)
+    free, effort = (
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, torque_unit=unit)) for unit in (1e5, 7.0)
     )
-    before, after = (program.solve(body, reference_for(body), rest(program)).forces for program in (upright, leaning))
-    assert after.sum(axis=0) == pytest.approx(before.sum(axis=0), abs=1.0)
-    ahead, behind = after[:6, 0].sum(), after[6:, 0].sum()
-    assert ahead < before[:6, 0].sum() - 20.0
-    assert behind > before[6:, 0].sum() + 20.0
+    before, after = (program.solve(body, reference_for(body), rest(program)) for program in (free, effort))
+    assert after.forces.sum(axis=0) == pytest.approx(before.forces.sum(axis=0), rel=0.02, abs=1.0)
+    ahead, behind = (slice(0, 6), slice(6, 12))
+    assert after.forces[ahead, 0].sum() < before.forces[ahead, 0].sum() - 20.0
+    assert after.forces[behind, 0].sum() > before.forces[behind, 0].sum() + 20.0
+    hips = [effort.names.index(leg.hip_flexion) for leg in LEGS.values()]
+    assert np.linalg.norm(after.torque[hips]) < 0.8 * np.linalg.norm(before.torque[hips])
+
+
+def test_torques_of_a_style_are_followed(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
+    body = in_double_support(dynamics, skeleton)
+    hip = 6 + qp.names.index(LEGS["Left"].hip_flexion)
+    free = qp.solve(body, reference_for(body), rest(qp)).torque[hip - 6]
+    wanted = free + 10.0
+    style = StyleTasks(torques=[TorqueTask(np.array([hip]), np.array([wanted]), 100.0)])
+    assert qp.solve(body, reference_for(body), rest(qp), style).torque[hip - 6] == pytest.approx(wanted, abs=1.0)
+
+
+@pytest.mark.parametrize("load", [1.0, 0.5, 0.1])
+def test_a_force_costs_its_square_over_the_load_of_its_foot(
+    dynamics: BodyDynamics, qp: WholeBodyQp, load: float
+) -> None:
+    """An edge costs the square of its coefficient; the largest force is in proportion to the load."""
+    body = body_at(dynamics)
+    old = replace(reference_for(body).left, load=load)
+    program, _, contacts = qp.program(body, replace(reference_for(body), left=old), rest(qp))
+    length = contacts.edges_W[:, :, 2]
+    assert length[:6] == pytest.approx(PARAMETERS.force_unit)
+    assert length[6:] == pytest.approx(np.sqrt(load) * PARAMETERS.force_unit)
+    largest = program.upper[: length.size] * length.ravel()
+    assert largest[:24] == pytest.approx(PARAMETERS.max_contact_force)
+    assert largest[24:] == pytest.approx(load * PARAMETERS.max_contact_force)
 
 
 def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:

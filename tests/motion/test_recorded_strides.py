@@ -29,7 +29,7 @@ def recording(duration: float = 5.0, speed: float = SPEED) -> RecordedMotion:
     for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
         phase = (time - 0.2) / (2.0 * STEP) + offset
         columns = [joints.names.index(name) for name in styled_joints(LEGS[side])]
-        angles[:, columns] = [CURVES.at(side, value, SPEED).angle for value in phase]
+        angles[:, columns] = [CURVES.at(side, value, SPEED).value for value in phase]
     path = np.column_stack((speed * time, 0.0 * time, 0.0 * time + 0.93))
     return RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0)
 
@@ -47,7 +47,7 @@ def test_the_mean_stride_begins_at_touchdown(side: Side) -> None:
     gait = recorded_gait(recording(), SUBJECT, "trial")
     for phase in (0.1, 0.45, 0.8):
         errors = [
-            np.abs(gait.curves.at(side, phase, SPEED).angle - CURVES.at(side, phase - lead, SPEED).angle).max()
+            np.abs(gait.curves.at(side, phase, SPEED).value - CURVES.at(side, phase - lead, SPEED).value).max()
             for lead in (0.01, 0.02, 0.03, 0.04)
         ]
         assert min(errors) < np.radians(2.5)
