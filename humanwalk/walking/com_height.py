@@ -14,7 +14,7 @@ RISE_SHARE, DESCENT_SHARE = 0.6, 0.8
 class ComHeight:
     """Height of the center of mass."""
 
-    walking: float = quantity(1.0, "", 0.8, 1.0)
+    walking: float = quantity(1.0, "", 0.8, 1.05)
     """Height at the top of the arcs in walking, relative to the height with straight legs."""
 
     standing: float = quantity(0.985, "", 0.8, 1.0)

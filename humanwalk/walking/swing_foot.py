@@ -12,13 +12,8 @@ from humanwalk.quantity import quantity
 from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
-HEIGHT_SHAPE = (1.0, 0.6, 0.27)
-"""Height of the ankle at the inner quarters of the swing, relative to its apex. The human ankle rises at heel-off and
-is low from mid-swing on (docs/balance.md, "What makes a walk regular, straight and cheap")."""
-
-PITCH_SHAPE = (0.0, -0.1, 0.36, 0.87, 1.0)
-"""Pitch at the quarters of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
-humans have 0.1, 0.5 and 0.9 at the inner quarters."""
+LATE_PITCH = 0.87
+"""Pitch at three quarters of the swing, from 0 at toe-off to 1 at touchdown; as in people."""
 
 MAX_TOE_UP = 0.442
 """Largest pitch at touchdown [rad]: that of 1.7 m/s."""
@@ -30,6 +25,20 @@ class SwingParameters:
 
     lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above its height at toe-off."""
+
+    mid_height: float = quantity(0.6, "", 0.2, 1.0)
+    """Height of the ankle at half of the swing, relative to its apex at a quarter. In people, whose ankle rises at
+    heel-off, it is 0.5 (docs/likeness.md)."""
+
+    late_height: float = quantity(0.27, "", 0.0, 1.0)
+    """The same at three quarters of the swing; in people 0.2."""
+
+    early_pitch: float = quantity(-0.1, "", -0.5, 0.5)
+    """Pitch at a quarter of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
+    in people it is -0.14 at a slow and 0.04 at a free speed."""
+
+    mid_pitch: float = quantity(0.36, "", 0.0, 1.0)
+    """The same at half of the swing; in people 0.39 at a slow and 0.46 at a free speed."""
 
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
     """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
@@ -111,9 +120,10 @@ class SwingProfile:
         """
         landing = flat_height - parameters.landing_depth + parameters.heel_height * sole.back * math.sin(toe_up)
         apex = max(foot.height + parameters.lift, flat_height + parameters.clearance)
-        inner = flat_height + np.array(HEIGHT_SHAPE) * (apex - flat_height)
+        inner = flat_height + np.array((1.0, parameters.mid_height, parameters.late_height)) * (apex - flat_height)
         heights = np.array((foot.height, *inner, landing))
-        pitches = foot.pitch + np.array(PITCH_SHAPE) * (-toe_up - foot.pitch)
+        shape = np.array((0.0, parameters.early_pitch, parameters.mid_pitch, LATE_PITCH, 1.0))
+        pitches = foot.pitch + shape * (-toe_up - foot.pitch)
         points = np.column_stack((heights, pitches))
         tangents = hermite_tangents(points)
         quarter = duration / (len(points) - 1)
