@@ -26,7 +26,7 @@ from humanwalk.study.study import load_study
 STUDY = "likeness"
 RESULTS = Path(__file__).parent / "results"
 CONTACT, FORWARD = "contact", "controller.balanced.command.points.0.forward"
-STYLE, NO_STYLE = "followed_curves", "none"
+GAIT, STYLED = "gait", "normative"
 
 COLUMNS = tuple(f"likeness.{name}" for name in likeness_columns())
 """Columns of the study's table that the goals need, besides the usual ones."""
@@ -70,7 +70,7 @@ class Goal:
 
     def target(self, row: Row) -> Target:
         """The target of a row."""
-        return self.without if row[STYLE] == NO_STYLE else self.with_style or self.without
+        return self.with_style if self.with_style and row[GAIT] == STYLED else self.without
 
     def reached(self, row: Row) -> bool | None:
         """Whether a row reaches the goal; None where it does not count."""
@@ -166,6 +166,8 @@ GOALS = (
 ROBUSTNESS = {
     "balance_speeds": ("five speeds, 60 s", "5 of 5"),
     "balance_seeds": ("seeds", "20 of 20 at each speed"),
+    "humanlike_seeds": ("seeds of the scenario humanlike", "20 of 20 at each speed"),
+    "humanlike_pushes": ("pushes of 30 N s, scenario humanlike", "40 of 40"),
     "normative_seeds": ("seeds with the style normative", "19 of 20"),
     "balance_pushes": ("pushes of 30 N s", "40 of 40"),
     "balance_pushes_60": ("pushes of 60 N s", "10 of 10"),
@@ -174,18 +176,18 @@ ROBUSTNESS = {
 """Shipped studies: what they are, and the goal."""
 
 
-def by_style(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """The rows of each style, by its name."""
-    return {style: [row for row in rows if row[STYLE] == style] for style in dict.fromkeys(row[STYLE] for row in rows)}
+def by_gait(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """The rows of each set of gains, by its name."""
+    return {gait: [row for row in rows if row[GAIT] == gait] for gait in dict.fromkeys(row[GAIT] for row in rows)}
 
 
 def headings(rows: Sequence[Row]) -> list[str]:
-    """Of the table of the rows of one style: what is measured, the goal, each run."""
+    """Of the table of the rows of one gait: what is measured, the goal, each run."""
     return ["", "goal", *(f"{row[CONTACT]} {row[FORWARD]:g} m/s" for row in rows)]
 
 
 def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]]:
-    """Lines of the table of the rows of one style; `mark` marks values that reach the goal.
+    """Lines of the table of the rows of one gait; `mark` marks values that reach the goal.
 
     A run that fell, or whose strides cannot be compared, has no values.
     """
@@ -231,8 +233,8 @@ def main(folder: Path) -> None:
         done = run_study(study, folder, client, lambda count, total, row: progress.update(task, completed=count))
     rows = done.to_pylist()
     console = Console(width=200 if not sys.stdout.isatty() else None)
-    for style, walks in by_style(rows).items():
-        shown = Table(*headings(walks), box=box.SIMPLE, title=f"style: {style}; ✓: reaches the goal")
+    for gait, walks in by_gait(rows).items():
+        shown = Table(*headings(walks), box=box.SIMPLE, title=f"{gait}; ✓: reaches the goal")
         for line in lines(walks, "{} ✓".format):
             shown.add_row(*map(escape, line))
         console.print(shown)

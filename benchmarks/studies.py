@@ -66,6 +66,12 @@ DRAWN: dict[str, Callable[[Results], Figure]] = {"actuations": tracking_by_group
 
 FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
+TITLES = {
+    "default": "The defaults, no style",
+    "humanlike": "The scenario `humanlike`, no style",
+    "normative": "The scenario `normative`, with people's angles and torques as a style",
+}
+"""Of the gaits of the study of likeness."""
 WALKED = ("end", "speed m/s", "off the path cm", "cost of transport")
 
 
@@ -112,6 +118,14 @@ def balance_seeds() -> str:
 
 def normative_seeds() -> str:
     return _seeds("normative_seeds")
+
+
+def humanlike_seeds() -> str:
+    return _seeds("humanlike_seeds")
+
+
+def humanlike_pushes() -> str:
+    return study_section("humanlike_pushes", _pushes_by_time)
 
 
 def _seeds(name: str) -> str:
@@ -259,8 +273,8 @@ def actuations() -> str:
 def likeness() -> str:
     def section(rows: list[Row]) -> str:
         return "\n\n".join(
-            f"Style: {style}\n\n{table(human_likeness.headings(walks), human_likeness.lines(walks, '**{}**'.format))}"
-            for style, walks in human_likeness.by_style(rows).items()
+            f"{TITLES[gait]}\n\n{table(human_likeness.headings(walks), human_likeness.lines(walks, '**{}**'.format))}"
+            for gait, walks in human_likeness.by_gait(rows).items()
         )
 
     return study_section(human_likeness.STUDY, section)
@@ -346,7 +360,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
-    "likeness.md": (likeness, normative_seeds),
+    "likeness.md": (likeness, humanlike_seeds, humanlike_pushes, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }
