@@ -38,7 +38,7 @@ def write(path: Path, speed: float, step: float, duration: float) -> None:
     zero = np.zeros(time.size)
     columns = {"time": time, "pelvis_tx": speed * time, "pelvis_ty": zero + HIP_HEIGHT, "pelvis_tz": zero}
     for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
-        angles = np.array([CURVES.at(side, t / (2.0 * step) + offset, speed).angle for t in time])
+        angles = np.array([CURVES.at(side, t / (2.0 * step) + offset, speed).value for t in time])
         columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
         columns |= {f"{joint}.angle_rad": zero for joint in LEGS[side].hip[1:]}
     header = ",".join(columns)

@@ -26,6 +26,7 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
+from humanwalk.walking.base_of_support import BaseOfSupport
 
 STYLED = "normative"
 """The shipped scenario with a style."""
@@ -156,7 +157,7 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
 def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) -> dict[str, str]:
     """Overrides of a scenario that walks a recording on its own feet: its angles as style, its speed and its steps.
 
-    The other parameters of the planner are those of the shipped scenario with a style.
+    The other parameters are those of the shipped scenario with a style, the pressure that of the defaults.
 
     Args:
         recording: File of joint angles with the path of the pelvis.
@@ -169,19 +170,17 @@ def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) 
     style = RecordedStyle(**_files(recording, mapping))
     gait = style.gait(subject)
     points = [{"time": 0.2, "forward": gait.speed}]
-    planner = plain(load_scenario(STYLED))["controller"]["balanced"]["planner"]
+    walker = plain(load_scenario(STYLED))["controller"]["balanced"]
     # Parameters are those of the reference body.
-    planner["timing"] |= {"step": gait.step / subject.scale.time, "walk_ratio": 0.0}
+    walker["planner"]["timing"] |= {"step": gait.step / subject.scale.time, "walk_ratio": 0.0}
+    # A recording has no torques, with which the pressure of that scenario belongs.
+    walker["planner"]["support"] = plain(BaseOfSupport())
+    walker |= {
+        "command": {"points": points, "acceleration": 1.0},
+        "style": {"recorded": _files(recording, mapping)},
+    }
     return {
-        "controller": json.dumps(
-            {
-                "balanced": {
-                    "command": {"points": points, "acceleration": 1.0},
-                    "planner": planner,
-                    "style": {"recorded": _files(recording, mapping)},
-                }
-            }
-        ),
+        "controller": json.dumps({"balanced": walker}),
         "description": json.dumps(f"{recording.name}, walked without external force at {gait.speed:.2f} m/s"),
     }
 

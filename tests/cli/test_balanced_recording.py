@@ -9,6 +9,7 @@ import pytest
 
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario
+from humanwalk.walking.base_of_support import BaseOfSupport
 
 SPEED, STEP = 0.8, 0.6
 SLOW_TRIAL = Path(__file__).parents[2] / "tools" / "slow_trial.py"
@@ -38,7 +39,8 @@ def test_its_speed_and_steps_are_commanded_and_nothing_supports_it(
     timing = controller.planner.timing
     assert timing.step == pytest.approx(STEP, abs=0.01)
     styled: Any = load_scenario("normative").controller
-    assert controller.planner == replace(styled.planner, timing=timing)
+    assert controller.planner == replace(styled.planner, timing=timing, support=BaseOfSupport())
+    assert controller.whole_body == styled.whole_body
     recording.unlink()
     assert humanwalk("reproduce", "walked")[0] == 0
 
