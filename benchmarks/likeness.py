@@ -166,8 +166,6 @@ GOALS = (
 ROBUSTNESS = {
     "balance_speeds": ("five speeds, 60 s", "5 of 5"),
     "balance_seeds": ("seeds", "20 of 20 at each speed"),
-    "humanlike_seeds": ("seeds of the scenario humanlike", "20 of 20 at each speed"),
-    "humanlike_pushes": ("pushes of 30 N s, scenario humanlike", "40 of 40"),
     "normative_seeds": ("seeds with the style normative", "19 of 20"),
     "balance_pushes": ("pushes of 30 N s", "40 of 40"),
     "balance_pushes_60": ("pushes of 60 N s", "10 of 10"),

@@ -68,7 +68,6 @@ FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
 TITLES = {
     "default": "The defaults, no style",
-    "humanlike": "The scenario `humanlike`, no style",
     "normative": "The scenario `normative`, with people's angles and torques as a style",
 }
 """Of the gaits of the study of likeness."""
@@ -118,14 +117,6 @@ def balance_seeds() -> str:
 
 def normative_seeds() -> str:
     return _seeds("normative_seeds")
-
-
-def humanlike_seeds() -> str:
-    return _seeds("humanlike_seeds")
-
-
-def humanlike_pushes() -> str:
-    return study_section("humanlike_pushes", _pushes_by_time)
 
 
 def _seeds(name: str) -> str:
@@ -360,7 +351,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
-    "likeness.md": (likeness, humanlike_seeds, humanlike_pushes, normative_seeds),
+    "likeness.md": (likeness, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }

@@ -59,7 +59,7 @@ class WholeBodyParameters:
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
     """Speed at which a stance foot that is still in the air moves toward the ground."""
 
-    heel_strike: TaskGains = critical(600.0, 1000.0)
+    heel_strike: TaskGains = critical(1200.0, 1000.0)
     """Rotation of a foot after heel strike."""
 
     heel_off: TaskGains = critical(400.0, 40.0)
@@ -111,7 +111,7 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(7.0, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(5.5, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""

@@ -18,10 +18,10 @@ corrections (our choice)."""
 class BaseOfSupport:
     """The part of a foot that the zero-moment point may use, relative to the ankle."""
 
-    center: float = quantity(0.037, "m", -0.05, 0.1)
+    center: float = quantity(0.03, "m", -0.05, 0.1)
     """Distance of the nominal zero-moment point ahead of the ankle."""
 
-    roll: float = quantity(0.104, "s", 0.0, 0.3)
+    roll: float = quantity(0.095, "s", 0.0, 0.3)
     """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
     pivot: float = quantity(0.07, "s", 0.0, 0.2)

@@ -29,23 +29,23 @@ class Rollover(NamedTuple):
 class FootRockers:
     """Rolling over heel and ball."""
 
-    heel: float = quantity(0.15, "s", 0.02, 0.4)
+    heel: float = quantity(0.142, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.18, "s", 0.0, 0.3)
+    ball: float = quantity(0.26, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster; proportional to the speed
     below, because a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.1, "rad", 0.0, 1.7)
+    pitch: float = quantity(1.3, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster; proportional to the speed below."""
 
-    full_pitch_speed: float = quantity(1.0, "m/s", 0.1, 5.0)
+    full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
     """Forward speed from which on the heel rises earliest and the pitch at toe-off is greatest."""
 
-    late_rise: float = quantity(0.6, "", 0.0, 1.0)
+    late_rise: float = quantity(1.0, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
     toes: float = quantity(0.6, "rad", 0.0, 1.2)

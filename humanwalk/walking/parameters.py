@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from humanwalk.quantity import quantity
 from humanwalk.walking.base_of_support import BaseOfSupport
+from humanwalk.walking.caution import Caution
 from humanwalk.walking.com_height import ComHeight
 from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.counter_rotation import CounterRotation
@@ -22,6 +23,7 @@ class StepPlannerParameters:
     """How the walker steps and balances."""
 
     timing: StepTiming = StepTiming()
+    caution: Caution = Caution()
     placement: StepPlacement = StepPlacement()
     footholds: FootholdSearch = FootholdSearch()
     pacing: Pacing = Pacing()

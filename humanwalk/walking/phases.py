@@ -4,6 +4,8 @@ STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPP
 """
 
 from collections.abc import Collection
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,10 +15,11 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.foot_references import foot_behind
 from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.lipm import PeriodicGait
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
-from humanwalk.walking.preview import FootholdPlanner
+from humanwalk.walking.preview import FootholdPlanner, Preview
 from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.touch import STANDING_TIME, first_touches
@@ -87,6 +90,7 @@ class PhaseTransitions:
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
         """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
+        swing = replace(swing, lift=self._parameters.caution.lift_above(swing.lift, state.caution))
         command = command.at_pace(state.preview.pace)
         foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
@@ -121,6 +125,7 @@ class PhaseTransitions:
         midpoint = 0.5 * (right.position + left.position)
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
+        caution = self._parameters.caution.after(state.caution, state.largest_error)
         beside_foot = path.nearest(body.foot(state.swing_side).position, command)
         landed = PlannerState(
             phase=Phase.DOUBLE_SUPPORT if is_moving else Phase.STAND,
@@ -138,18 +143,25 @@ class PhaseTransitions:
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_moving else 0,
             early=max(state.timing.step - state.elapsed, 0.0),
-            timing=self._parameters.timing.at_speed(command.forward),
+            timing=self._parameters.timing.at_speed(command.forward, caution),
             ground=state.ground,
+            caution=caution,
         )
         return self._look_ahead(landed, command, state.preview.ahead) if is_moving else landed
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
-        """The state with the next footholds, and with duration and speed of the step that suit them."""
-        gait = desired_gait(state, command, self._parameters)
-        preview = self._footholds.preview(state.ground, state.stance_foot, state.stance, state.heading, gait, ahead)
-        goal, law, sole = preview.footholds[0], self._parameters.clearance, self._footholds.sole
-        added = clearance(state.ground, state.old_foot, goal, state.heading, sole, law)
-        lift = max(max(added.lift) - law.margin, 0.0)
+        """The state with the next footholds, and with caution, duration and speed of the step that suit them."""
+        gait, preview = self._preview(state, command, ahead)
+        goal, lift = preview.footholds[0], self._added_lift(state, state.old_foot, preview.footholds[0])
+        feet = (state.old_foot, state.stance_foot, *preview.footholds)
+        next_lift = self._added_lift(state, state.stance_foot, preview.footholds[1])
+        heights = (lift, next_lift, *(start.step_to(end) for start, end in pairwise(feet)))
+        caution = self._parameters.caution.on_ground(heights)
+        if caution > state.caution:
+            timing = self._parameters.timing.at_speed(command.forward, caution)
+            state = state._replace(caution=caution, timing=timing)
+            gait, preview = self._preview(state, command, ahead)
+            goal, lift = preview.footholds[0], self._added_lift(state, state.old_foot, preview.footholds[0])
         factor = self._parameters.pacing.duration_factor(goal.ground - state.old_foot.ground, lift)
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
@@ -165,6 +177,18 @@ class PhaseTransitions:
         other = desired_gait(slower, command.at_pace(pace), self._parameters)
         moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
         return slower._replace(preview=moved)
+
+    def _preview(self, state: PlannerState, command: Command, ahead: float) -> tuple[PeriodicGait, Preview]:
+        """The desired gait, and its next footholds."""
+        gait = desired_gait(state, command, self._parameters)
+        stance = (state.stance_foot, state.stance, state.heading)
+        return gait, self._footholds.preview(state.ground, *stance, gait, ahead)
+
+    def _added_lift(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
+        """Height [m] by which a foot is lifted higher than on a plane, without the margin."""
+        law = self._parameters.clearance
+        added = clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
+        return max(max(added.lift) - law.margin, 0.0)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""

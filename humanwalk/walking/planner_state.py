@@ -69,6 +69,8 @@ class PlannerState(NamedTuple):
         preview: The next footholds.
         ground: What is known of the ground.
         zmp: Zero-moment point that was planned last [m].
+        caution: How careful this step is, from 0 to 1; see `Caution`.
+        largest_error: Largest error of the DCM at touchdown that was expected in this step [m].
     """
 
     phase: Phase
@@ -91,6 +93,8 @@ class PlannerState(NamedTuple):
     preview: Preview = Preview()
     ground: Ground = Plane()
     zmp: complex = 0.0
+    caution: float = 0.0
+    largest_error: float = 0.0
 
     def __deepcopy__(self, memo: object) -> "PlannerState":
         """Return itself: Drake copies abstract values often, and the state is immutable."""

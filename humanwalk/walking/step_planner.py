@@ -198,7 +198,11 @@ class StepPlanner:
         max_com_height += p.height.before_descent(descent, timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
-        next_state = next_state._replace(elapsed=state.elapsed + phase_rate * self._period, swing=swing)
+        next_state = next_state._replace(
+            elapsed=state.elapsed + phase_rate * self._period,
+            swing=swing,
+            largest_error=max(state.largest_error, abs(error)),
+        )
         balance = Balance(zmp, pivot, dcm, dcm_reference)
         return next_state, self._reference(
             state, body, balance, com_height, support, feet, foothold.position, command.forward

@@ -14,9 +14,9 @@ class StepTiming:
     """Durations of the phases, and limits of the clock's rate."""
 
     step: float = quantity(0.53, "s", 0.3, 1.2)
-    """From touchdown to touchdown of the other foot, without a walk ratio."""
+    """From touchdown to touchdown of the other foot in a careful step, and in all steps without a walk ratio."""
 
-    walk_ratio: float = quantity(0.0, "m s", 0.0, 1.0)
+    walk_ratio: float = quantity(0.35, "m s", 0.0, 1.0)
     """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
 
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)
@@ -51,11 +51,17 @@ class StepTiming:
                 "have 0.33 to 0.40"
             )
 
-    def at_speed(self, speed: float) -> "StepTiming":
-        """The timing at a forward speed [m/s]: with length v T, the walk ratio is v T^2."""
+    def at_speed(self, speed: float, caution: float = 0.0) -> "StepTiming":
+        """The timing at a forward speed [m/s]: with length v T, the walk ratio is v T^2.
+
+        Args:
+            speed: [m/s].
+            caution: From an ordinary step, 0, to a careful one, 1, which is not longer than `step`.
+        """
         if self.walk_ratio == 0.0 or speed <= 0.0:
             return self
-        return self.stretched(min(math.sqrt(self.walk_ratio / speed), self.longest_step) / self.step)
+        ordinary = min(math.sqrt(self.walk_ratio / speed), self.longest_step) / self.step
+        return self.stretched(ordinary + caution * (min(ordinary, 1.0) - ordinary))
 
     def stretched(self, factor: float) -> "StepTiming":
         """The timing of a step that takes `factor` times as long."""

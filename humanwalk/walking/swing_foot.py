@@ -23,21 +23,21 @@ MAX_TOE_UP = 0.442
 class SwingParameters:
     """Shape of the swing."""
 
-    lift: float = quantity(0.045, "m", 0.0, 0.3)
-    """Rise of the ankle above its height at toe-off."""
+    lift: float = quantity(0.03, "m", 0.0, 0.3)
+    """Rise of the ankle above its height at toe-off in an ordinary step."""
 
-    mid_height: float = quantity(0.6, "", 0.2, 1.0)
+    mid_height: float = quantity(0.55, "", 0.2, 1.0)
     """Height of the ankle at half of the swing, relative to its apex at a quarter. In people, whose ankle rises at
     heel-off, it is 0.5 (docs/likeness.md)."""
 
-    late_height: float = quantity(0.27, "", 0.0, 1.0)
+    late_height: float = quantity(0.23, "", 0.0, 1.0)
     """The same at three quarters of the swing; in people 0.2."""
 
-    early_pitch: float = quantity(-0.1, "", -0.5, 0.5)
+    early_pitch: float = quantity(0.0, "", -0.5, 0.5)
     """Pitch at a quarter of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
     in people it is -0.14 at a slow and 0.04 at a free speed."""
 
-    mid_pitch: float = quantity(0.36, "", 0.0, 1.0)
+    mid_pitch: float = quantity(0.43, "", 0.0, 1.0)
     """The same at half of the swing; in people 0.39 at a slow and 0.46 at a free speed."""
 
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
@@ -53,13 +53,13 @@ class SwingParameters:
     landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    push_off: float = quantity(6.0, "1/m", 0.0, 30.0)
+    push_off: float = quantity(7.35, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
     landing_speed_ratio: float = quantity(0.55, "", 0.0, 1.0)
     """Horizontal speed at touchdown, relative to the speed of the walk."""
 
-    landing_deceleration: float = quantity(22.0, "1/s", 0.0, 50.0)
+    landing_deceleration: float = quantity(20.5, "1/s", 0.0, 50.0)
     """Horizontal deceleration at touchdown, per speed of the walk."""
 
     landing_depth: float = quantity(0.003, "m", 0.0, 0.05)

@@ -23,7 +23,15 @@ def test_double_and_single_support_make_the_step() -> None:
 
 @given(st.floats(0.05, 2.5))
 def test_without_a_walk_ratio_the_step_takes_the_same_time_at_every_speed(speed: float) -> None:
-    assert TIMING.at_speed(speed) == TIMING
+    timing = replace(TIMING, walk_ratio=0.0)
+    assert timing.at_speed(speed) == timing
+
+
+@given(st.floats(0.05, 2.5), st.floats(0.0, 1.0))
+def test_a_careful_step_is_not_longer_than_the_given_duration(speed: float, caution: float) -> None:
+    ordinary, step, careful = (TIMING.at_speed(speed, c).step for c in (0.0, caution, 1.0))
+    assert careful == pytest.approx(min(ordinary, TIMING.step))
+    assert min(careful, ordinary) - 1e-12 <= step <= ordinary + 1e-12
 
 
 @given(st.floats(0.05, 2.5))
