@@ -3,7 +3,7 @@
 STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
@@ -75,10 +75,15 @@ class PhaseTransitions:
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
         if state.phase is Phase.STAND and is_moving:
+            state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
+        if state.phase is Phase.WEIGHT_SHIFT:
+            # The command may still change before the first step.
             timing = self._parameters.timing.at_speed(command.forward)
-            return state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0, timing=timing)
-        if state.phase is Phase.WEIGHT_SHIFT and state.elapsed >= timing.weight_shift:
+            state = self._cautious(state._replace(timing=timing, caution=0.0), command)
+            if state.elapsed < timing.weight_shift:
+                return state
             # The weight shift takes the place of the first double support.
+            timing = state.timing
             stepping = self._look_ahead(state._replace(elapsed=timing.double_support), command)
             return self._lift_off(stepping._replace(elapsed=stepping.timing.double_support), body, command)
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
@@ -151,17 +156,10 @@ class PhaseTransitions:
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""
+        state = self._cautious(state, command, ahead)
         gait, preview = self._preview(state, command, ahead)
-        goal, lift = preview.footholds[0], self._added_lift(state, state.old_foot, preview.footholds[0])
-        feet = (state.old_foot, state.stance_foot, *preview.footholds)
-        next_lift = self._added_lift(state, state.stance_foot, preview.footholds[1])
-        heights = (lift, next_lift, *(start.step_to(end) for start, end in pairwise(feet)))
-        caution = self._parameters.caution.on_ground(heights)
-        if caution > state.caution:
-            timing = self._parameters.timing.at_speed(command.forward, caution)
-            state = state._replace(caution=caution, timing=timing)
-            gait, preview = self._preview(state, command, ahead)
-            goal, lift = preview.footholds[0], self._added_lift(state, state.old_foot, preview.footholds[0])
+        goal = preview.footholds[0]
+        lift = self._added_lift(state, state.old_foot, goal)
         factor = self._parameters.pacing.duration_factor(goal.ground - state.old_foot.ground, lift)
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
@@ -178,11 +176,26 @@ class PhaseTransitions:
         moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
         return slower._replace(preview=moved)
 
+    def _cautious(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
+        """The state with the caution that the ground ahead requires, if that is more, and with its timing."""
+        _, preview = self._preview(state, command, ahead)
+        caution = self._parameters.caution.on_ground(self._heights(state, preview))
+        if caution <= state.caution:
+            return state
+        return state._replace(caution=caution, timing=self._parameters.timing.at_speed(command.forward, caution))
+
     def _preview(self, state: PlannerState, command: Command, ahead: float) -> tuple[PeriodicGait, Preview]:
         """The desired gait, and its next footholds."""
         gait = desired_gait(state, command, self._parameters)
         stance = (state.stance_foot, state.stance, state.heading)
         return gait, self._footholds.preview(state.ground, *stance, gait, ahead)
+
+    def _heights(self, state: PlannerState, preview: Preview) -> Iterator[float]:
+        """Heights of the ground of the next steps relative to level ground, and those of what they clear [m]."""
+        feet = (state.old_foot, state.stance_foot, *preview.footholds)
+        yield from (start.step_to(goal) for start, goal in pairwise(feet))
+        yield self._added_lift(state, state.old_foot, preview.footholds[0])
+        yield self._added_lift(state, state.stance_foot, preview.footholds[1])
 
     def _added_lift(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
         """Height [m] by which a foot is lifted higher than on a plane, without the margin."""

@@ -7,6 +7,8 @@ import pytest
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
+from humanwalk.terrain.course import Course
+from humanwalk.terrain.steps import Curb
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import STOP_TURN, PhaseTransitions
@@ -15,13 +17,15 @@ from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
 PARAMETERS = StepPlannerParameters()
-TIMING = PARAMETERS.timing
 ANKLE = 0.07
 WALK, STOP = Command(0.5), Command()
+TIMING = PARAMETERS.timing.at_speed(WALK.forward)
+CAREFUL = PARAMETERS.timing.step
 FOOTHOLDS = FootholdPlanner(
     SoleExtent(0.055, 0.211, 0.048), PARAMETERS.footholds, PARAMETERS.placement, PARAMETERS.pacing, com_height=0.95
 )
 PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1), FOOTHOLDS)
+LEVEL = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(), FOOTHOLDS)
 
 
 def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
@@ -83,6 +87,33 @@ def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured() 
     assert state.right.position == 0.5 - 0.1j
     assert state.right.ground - state.left.ground == pytest.approx(0.5 * 0.1, rel=0.01)
     assert state.support == before.support
+
+
+def test_after_a_large_error_of_the_dcm_the_next_steps_are_careful() -> None:
+    law, first, second = PARAMETERS.caution, landed_at(0.5 - 0.1j), replace(BODY, left=foot(1.0 + 0.1j))
+    disturbed = in_single_support(1.01)._replace(largest_error=law.full_error)
+    state = LEVEL.advance(disturbed, first, WALK)
+    assert state.caution == pytest.approx(1.0)
+    assert state.timing.step == pytest.approx(CAREFUL)
+    state = state._replace(phase=Phase.SINGLE_SUPPORT, elapsed=1.0)
+    state = LEVEL.advance(state, replace(second, right=first.right), WALK)
+    assert state.caution == pytest.approx(law.memory)
+    assert CAREFUL < state.timing.step < TIMING.step
+
+
+def test_steps_on_a_plane_are_ordinary() -> None:
+    state = LEVEL.advance(in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)
+    assert state.caution == pytest.approx(0.0, abs=1e-9)
+    assert state.timing.step == pytest.approx(TIMING.step)
+
+
+@pytest.mark.parametrize("height", [0.015, 0.05])
+def test_steps_to_a_curb_are_careful(height: float) -> None:
+    phases = PhaseTransitions(PARAMETERS, ANKLE, "Right", Course((Curb(height=height),), run_up=0.6), FOOTHOLDS)
+    state = phases.advance(phases.start(BODY, 0.0), BODY, WALK)
+    assert state.phase is Phase.WEIGHT_SHIFT
+    assert state.caution == pytest.approx(min(height / PARAMETERS.caution.full_height, 1.0))
+    assert state.timing.step == pytest.approx(TIMING.step + state.caution * (CAREFUL - TIMING.step))
 
 
 def test_the_last_step_ends_in_standing() -> None:
