@@ -160,9 +160,8 @@ class StepPlanner:
 
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
-        desired = gait.displacement.on(state.stance) + preview.first_move / state.direction
         sensitivity = foothold_gain(self.frequency, timing.double_support)
-        desired += sensitivity * error
+        desired = gait.displacement.on(state.stance) + preview.first_move / state.direction + sensitivity * error
 
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))
@@ -198,11 +197,8 @@ class StepPlanner:
         max_com_height += p.height.before_descent(descent, timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
-        next_state = next_state._replace(
-            elapsed=state.elapsed + phase_rate * self._period,
-            swing=swing,
-            largest_error=max(state.largest_error, abs(error)),
-        )
+        elapsed, largest = state.elapsed + phase_rate * self._period, max(state.largest_error, abs(error))
+        next_state = next_state._replace(elapsed=elapsed, swing=swing, largest_error=largest)
         balance = Balance(zmp, pivot, dcm, dcm_reference)
         return next_state, self._reference(
             state, body, balance, com_height, support, feet, foothold.position, command.forward

@@ -507,7 +507,7 @@ def test_live_view_and_replay_listen_on_this_machine_only(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     ("phase", "begin", "breaks"),
-    [(0, 0.1, throw), (1, 0.8, throw), (3, 1.4, throw), (2, 1.66, throw), (3, 1.4, not_a_number)],
+    [(0, 0.1, throw), (1, 0.8, throw), (3, 1.4, throw), (2, 1.78, throw), (3, 1.4, not_a_number)],
     ids=["standing", "weight shift", "single support", "double support", "not a number"],
 )
 def test_program_that_fails_in_a_phase_of_the_balanced_walk_leaves_its_record(

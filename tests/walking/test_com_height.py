@@ -26,7 +26,7 @@ def test_the_top_is_as_high_at_every_speed(speed: float) -> None:
 
 
 def test_it_is_lowest_soon_after_touchdown() -> None:
-    heights = {t / 100: HEIGHT.arc(t / 100, STEP, 1.4)[0] for t in range(52)}
+    heights = {t / 1000: HEIGHT.arc(t / 1000, STEP, 1.4)[0] for t in range(520)}
     assert min(heights, key=heights.get) == pytest.approx(HEIGHT.delay)  # type: ignore[arg-type]
 
 

@@ -120,7 +120,7 @@ def test_before_a_step_up_the_heel_stays_on_the_ground_and_before_one_down_it_ri
 
     assert task(0.18, 0.01) is FootTask.FLAT
     assert task(0.0, 0.01) is task(-0.18, 0.01) is FootTask.HEEL_OFF
-    assert task(0.0, 1.5 * ROCKERS.ball) is FootTask.FLAT
+    assert task(0.0, 1.1 * ROCKERS.ball) is FootTask.FLAT
     assert task(-0.18, 0.99 * ROCKERS.descent) is FootTask.HEEL_OFF
     assert task(-0.18, 1.01 * ROCKERS.descent) is FootTask.FLAT
 

@@ -12,7 +12,9 @@ ROCKERS = FootRockers()
 DOUBLE_SUPPORT = 0.1
 
 
-def over_ball(since: float, speed: float = 1.2, rockers: FootRockers = ROCKERS, climbing: float = 0.0) -> FootReference:
+def over_ball(
+    since: float, speed: float = ROCKERS.full_pitch_speed, rockers: FootRockers = ROCKERS, climbing: float = 0.0
+) -> FootReference:
     return rockers.over_ball(since, DOUBLE_SUPPORT, 0.5, 0.0, np.eye(3), Rollover(speed, rockers.ball, climbing))
 
 
@@ -25,13 +27,17 @@ def test_heels_rise_above_a_minimum_forward_speed() -> None:
 def test_the_heel_rises_from_flat_to_its_pitch() -> None:
     assert over_ball(0.0).pitch[:2] == pytest.approx((0.0, 0.0))
     assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT).pitch[0] == pytest.approx(ROCKERS.pitch)
-    assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6).pitch[0] == pytest.approx(0.6 * ROCKERS.pitch)
+    assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6 * ROCKERS.full_pitch_speed).pitch[0] == pytest.approx(
+        0.6 * ROCKERS.pitch
+    )
 
 
 def test_a_heel_that_rises_late_has_the_same_pitch_at_toe_off() -> None:
-    late, duration = FootRockers(late_rise=0.7), ROCKERS.ball + DOUBLE_SUPPORT
-    assert over_ball(0.5 * duration, rockers=late).pitch[0] < over_ball(0.5 * duration).pitch[0]
-    assert over_ball(duration, rockers=late).pitch[0] == pytest.approx(ROCKERS.pitch)
+    early, late = (FootRockers(late_rise=share) for share in (0.0, 0.7))
+    duration = ROCKERS.ball + DOUBLE_SUPPORT
+    assert over_ball(0.5 * duration, rockers=late).pitch[0] < over_ball(0.5 * duration, rockers=early).pitch[0]
+    for rockers in (early, late):
+        assert over_ball(duration, rockers=rockers).pitch[0] == pytest.approx(ROCKERS.pitch)
 
 
 @given(st.floats(0.01, 0.19), st.floats(0.0, 1.0))

@@ -36,9 +36,9 @@ def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
 BODY = BodyState(0j, 0j, 0.97, right=foot(-0.1j), left=foot(0.1j))
 
 
-def in_single_support(progress: float = 0.5, steps: int = 1) -> PlannerState:
-    state = PHASES.start(BODY, 0.0)
-    state = PHASES.advance(state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=TIMING.weight_shift), BODY, WALK)
+def in_single_support(progress: float = 0.5, steps: int = 1, phases: PhaseTransitions = PHASES) -> PlannerState:
+    state = phases.start(BODY, 0.0)
+    state = phases.advance(state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=TIMING.weight_shift), BODY, WALK)
     return state._replace(elapsed=TIMING.double_support + progress * TIMING.single_support, steps=steps)
 
 
@@ -91,7 +91,7 @@ def test_at_touchdown_the_feet_change_roles_and_stand_where_they_are_measured() 
 
 def test_after_a_large_error_of_the_dcm_the_next_steps_are_careful() -> None:
     law, first, second = PARAMETERS.caution, landed_at(0.5 - 0.1j), replace(BODY, left=foot(1.0 + 0.1j))
-    disturbed = in_single_support(1.01)._replace(largest_error=law.full_error)
+    disturbed = in_single_support(1.01, phases=LEVEL)._replace(largest_error=law.full_error)
     state = LEVEL.advance(disturbed, first, WALK)
     assert state.caution == pytest.approx(1.0)
     assert state.timing.step == pytest.approx(CAREFUL)
@@ -102,7 +102,7 @@ def test_after_a_large_error_of_the_dcm_the_next_steps_are_careful() -> None:
 
 
 def test_steps_on_a_plane_are_ordinary() -> None:
-    state = LEVEL.advance(in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)
+    state = LEVEL.advance(in_single_support(1.01, phases=LEVEL), landed_at(0.5 - 0.1j), WALK)
     assert state.caution == pytest.approx(0.0, abs=1e-9)
     assert state.timing.step == pytest.approx(TIMING.step)
 

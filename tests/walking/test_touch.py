@@ -84,7 +84,7 @@ def test_a_landing_foot_without_load_feels_no_pressure_and_later_nothing() -> No
 
 @pytest.mark.parametrize(
     "elapsed, pitch_rate, is_still",
-    [(0.3, 0.1, True), (0.3, -1.5, False), (0.5 * PARAMETERS.rockers.heel, 0.1, False), (TIMING.step, 0.1, False)],
+    [(0.2, 0.1, True), (0.2, -1.5, False), (0.5 * PARAMETERS.rockers.heel, 0.1, False), (TIMING.step, 0.1, False)],
 )
 def test_a_foot_is_still_if_it_does_not_turn_between_landing_and_heel_off(
     elapsed: float, pitch_rate: float, is_still: bool
