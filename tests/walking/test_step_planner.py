@@ -293,6 +293,13 @@ def test_step_durations_do_not_depend_on_the_control_period() -> None:
     assert len(coarse) == len(fine) > 3
 
 
+def test_steps_after_a_push_are_careful_and_then_ordinary_again() -> None:
+    cautions = {t: s.caution for t, s, *_ in pendulum_walk(planner(), walk_at(1.0), 12.0, push=(5.0, 0.5 + 0j))}
+    assert all(caution == 0.0 for time, caution in cautions.items() if time < 5.0)
+    assert max(cautions.values()) > 0.5
+    assert list(cautions.values())[-1] < 0.05
+
+
 def test_the_pitch_at_toe_off_is_smaller_after_a_short_step() -> None:
     pitches = {}
     for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.5 + 0j)):
