@@ -1,4 +1,4 @@
-"""Careful steps: shorter, quicker and higher ones, on ground that is not level and after a disturbance of balance.
+"""Careful steps, which are shorter, quicker and higher: on uneven ground, and after a disturbance of balance.
 
 People, too, take shorter and quicker steps when they are perturbed (Hak et al. 2012).
 """
@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from humanwalk.numerics.scalars import clip
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 
 
 @dataclass(frozen=True)
 class Caution:
     """When steps are careful, and how high the foot is lifted in them; their duration is `timing.step`.
 
-    The caution of a step is 0 for an ordinary and 1 for a careful one, between them parameters are interpolated.
+    The caution of an ordinary step is 0, that of a careful step 1. Between them duration and lift are interpolated.
     """
 
     free_error: float = quantity(0.15, "m", 0.0, 1.0)
@@ -25,8 +25,8 @@ class Caution:
     """Error from which on the next step is a careful one."""
 
     full_height: float = quantity(0.03, "m", 0.001, 0.5)
-    """Height of the ground above or below level ground, at the next footholds or on the way to them, from which on a
-    step is a careful one."""
+    """Height from which on a step is a careful one: of a foothold above or below the plane of the foot before it, or of
+    what the swinging foot clears."""
 
     memory: float = quantity(0.5, "", 0.0, 0.95)
     """Share of the caution of a step that remains in the next one."""
@@ -34,13 +34,20 @@ class Caution:
     lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above its height at toe-off in a careful step, if that is more than in an ordinary one."""
 
+    def __post_init__(self) -> None:
+        """Raise ParameterError if the errors are not in ascending order."""
+        if self.full_error < self.free_error:
+            raise ParameterError(
+                f"full_error: {self.full_error:g} is too small; allowed: free_error, {self.free_error:g} m, or more"
+            )
+
     def after(self, previous: float, error: float) -> float:
         """The caution of a step after one with another caution and an error of the DCM [m]."""
         span = max(self.full_error - self.free_error, 1e-9)
         return max(clip((error - self.free_error) / span, 0.0, 1.0), self.memory * previous)
 
     def on_ground(self, heights: Iterable[float]) -> float:
-        """The caution for heights of the ground relative to level ground [m]."""
+        """The caution for rises and heights of the next steps [m]."""
         return min(max(map(abs, heights), default=0.0) / self.full_height, 1.0)
 
     def lift_above(self, ordinary: float, caution: float) -> float:

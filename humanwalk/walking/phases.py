@@ -79,7 +79,8 @@ class PhaseTransitions:
         if state.phase is Phase.WEIGHT_SHIFT:
             # The command may still change before the first step.
             timing = self._parameters.timing.at_speed(command.forward)
-            state = self._cautious(state._replace(timing=timing, caution=0.0), command)
+            state = state._replace(timing=timing, caution=0.0)
+            state = self._cautious(state, command, self._preview(state, command)[1])
             if state.elapsed < timing.weight_shift:
                 return state
             # The weight shift takes the place of the first double support.
@@ -156,8 +157,10 @@ class PhaseTransitions:
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""
-        state = self._cautious(state, command, ahead)
         gait, preview = self._preview(state, command, ahead)
+        careful = self._cautious(state, command, preview)
+        if careful is not state:
+            state, (gait, preview) = careful, self._preview(careful, command, ahead)
         goal = preview.footholds[0]
         lift = self._added_lift(state, state.old_foot, goal)
         factor = self._parameters.pacing.duration_factor(goal.ground - state.old_foot.ground, lift)
@@ -176,22 +179,21 @@ class PhaseTransitions:
         moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
         return slower._replace(preview=moved)
 
-    def _cautious(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
-        """The state with the caution that the ground ahead requires, if that is more, and with its timing."""
-        _, preview = self._preview(state, command, ahead)
+    def _cautious(self, state: PlannerState, command: Command, preview: Preview) -> PlannerState:
+        """The state with the caution that the next footholds require, if that is more, and with its timing."""
         caution = self._parameters.caution.on_ground(self._heights(state, preview))
         if caution <= state.caution:
             return state
         return state._replace(caution=caution, timing=self._parameters.timing.at_speed(command.forward, caution))
 
-    def _preview(self, state: PlannerState, command: Command, ahead: float) -> tuple[PeriodicGait, Preview]:
+    def _preview(self, state: PlannerState, command: Command, ahead: float = 0.0) -> tuple[PeriodicGait, Preview]:
         """The desired gait, and its next footholds."""
         gait = desired_gait(state, command, self._parameters)
         stance = (state.stance_foot, state.stance, state.heading)
         return gait, self._footholds.preview(state.ground, *stance, gait, ahead)
 
     def _heights(self, state: PlannerState, preview: Preview) -> Iterator[float]:
-        """Heights of the ground of the next steps relative to level ground, and those of what they clear [m]."""
+        """Rises of the next steps above the plane of the foot behind, and heights of what they clear [m]."""
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
         yield from (start.step_to(goal) for start, goal in pairwise(feet))
         yield self._added_lift(state, state.old_foot, preview.footholds[0])

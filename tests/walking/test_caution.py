@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.quantity import ParameterError
 from humanwalk.walking.caution import Caution
 
 CAUTION = Caution()
@@ -42,6 +43,11 @@ def test_equal_errors_switch_from_ordinary_to_careful_steps() -> None:
     switch = replace(CAUTION, free_error=0.2, full_error=0.2)
     assert switch.after(0.0, 0.199) == 0.0
     assert switch.after(0.0, 0.201) == 1.0
+
+
+def test_errors_in_descending_order_are_refused() -> None:
+    with pytest.raises(ParameterError, match=r"full_error: 0\.1 is too small; allowed: free_error, 0\.15 m, or more"):
+        Caution(full_error=0.1)
 
 
 @given(st.lists(st.floats(-0.5, 0.5), max_size=5))
