@@ -17,7 +17,7 @@ RUN chown walker /humanwalk
 USER walker
 # The packages change less often than the code.
 COPY --chown=walker pyproject.toml requirements.lock ./
-RUN python -m venv .venv && .venv/bin/pip install --quiet --no-cache-dir --require-hashes -r requirements.lock
+RUN python -m venv .venv && .venv/bin/pip install --quiet --no-cache-dir --no-deps --require-hashes -r requirements.lock
 COPY --chown=walker . .
 RUN make .venv/.installed
 ENV PATH="/humanwalk/.venv/bin:$PATH"

@@ -51,7 +51,7 @@ clean: ## Remove .venv, caches and builds; keep runs
 		"$$python" -m venv --clear .venv || exit 1; \
 	fi
 	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(BIN)/python -m ensurepip >/dev/null
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps --editable .
 	@$(BIN)/python -m pip check --disable-pip-version-check >/dev/null || \
 		{ echo "humanwalk: requirements.lock does not fit pyproject.toml; run: make lock"; exit 1; }
