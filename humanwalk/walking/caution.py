@@ -17,11 +17,11 @@ class Caution:
     The caution of an ordinary step is 0, that of a careful step 1. Between them duration and lift are interpolated.
     """
 
-    free_error: float = quantity(0.15, "m", 0.0, 1.0)
-    """Error of the DCM at touchdown up to which the next step is an ordinary one. In an undisturbed walk it is less
-    than 0.08 m."""
+    free_error: float = quantity(0.2, "m", 0.0, 1.0)
+    """Error of the DCM at touchdown up to which the next step is an ordinary one. In an undisturbed walk it is 0.10 to
+    0.14 m at 1.0 m/s."""
 
-    full_error: float = quantity(0.3, "m", 0.0, 2.0)
+    full_error: float = quantity(0.35, "m", 0.0, 2.0)
     """Error from which on the next step is a careful one."""
 
     full_height: float = quantity(0.03, "m", 0.001, 0.5)

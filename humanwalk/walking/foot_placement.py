@@ -37,16 +37,14 @@ class StepPlacement:
     speedup_crossing: float = quantity(0.07, "m", 0.0, 0.3)
     """The clock runs faster when the desired foothold is narrower than `min_width` by more than this."""
 
-    speedup_width: float = quantity(0.35, "m", 0.2, 1.0)
-    """The clock runs faster when the desired foothold is wider than this."""
-
-    double_support_speedup_width: float = quantity(0.5, "m", 0.2, 2.0)
-    """The same in double support, where the desired foothold varies more."""
+    speedup_width: float = quantity(0.5, "m", 0.2, 2.0)
+    """The clock runs faster when the desired foothold is wider than this. With 0.35 m wide, quick steps can sustain
+    themselves."""
 
     passing_distance: float = quantity(0.12, "m", 0.0, 0.3)
     """Sideways distance at which a foot that comes from across passes the stance foot."""
 
-    max_com_distance: float = quantity(0.45, "m", 0.1, 1.0)
+    max_com_distance: float = quantity(0.38, "m", 0.1, 1.0)
     """Largest distance of a foothold ahead of or behind the center of mass at touchdown: beyond, the stretched leg does
     not reach the ground in time."""
 
@@ -109,7 +107,7 @@ class StepPlacement:
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].
 
-        It calls for one if it is wider than `double_support_speedup_width`, or across the stance foot. A foot that is
+        It calls for one if it is wider than `speedup_width`, or across the stance foot. A foot that is
         itself across has to come out from behind before it can step across.
 
         Args: See `within_reach`.
@@ -117,7 +115,7 @@ class StepPlacement:
         outward = OUTWARD[stance]
         width = outward * desired.imag
         crossing = -width if outward * foot.imag >= self.min_own_side_offset else 0.0
-        return max(width - self.double_support_speedup_width, crossing, 0.0)
+        return max(width - self.speedup_width, crossing, 0.0)
 
     def within_reach(self, desired: complex, stance: Side, foot: complex) -> tuple[complex, float]:
         """Nearest foothold that is within reach and clear of the stance leg.

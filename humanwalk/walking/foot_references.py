@@ -25,14 +25,15 @@ def rollover(
 ) -> Rollover:
     """How a foot leaves the ground in the step from `start` to `goal`.
 
-    Its speed is the commanded one, or less if the step is short or backward. A foot that is steep when it leaves the
-    ground below the body catches the ground with its toes. In a step up or down it is large: the ankle of a foot that
-    rises beside a riser is far behind the body, and that of one below which the body sinks is, too; it does not bend so
-    far that the foot could be level.
+    Its speed is the commanded one, or less if the step is short for an ordinary one, or backward. A foot that is steep
+    when it leaves the ground below the body catches the ground with its toes. In a step up or down it is large: the
+    ankle of a foot that rises beside a riser is far behind the body, and that of one below which the body sinks is,
+    too; it does not bend so far that the foot could be level.
     """
     length = ((goal.position - start.position) / state.direction).real
     climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
-    ordinary = min(command.forward, SHORT_STEP * length / state.timing.step)
+    duration = parameters.timing.at_speed(command.forward).step
+    ordinary = min(command.forward, SHORT_STEP * length / duration)
     speed = (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
     return Rollover(speed, heel_off_lead(start, goal, command.forward, parameters), climbing)
 

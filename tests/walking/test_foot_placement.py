@@ -86,7 +86,7 @@ def test_in_double_support_footholds_across_and_wide_ones_call_for_a_faster_cloc
 ) -> None:
     beside = complex(-0.4, OUTWARD[stance] * 0.15)
     excess = PLACEMENT.double_support_excess(complex(x, OUTWARD[stance] * width), stance, beside)
-    assert excess == pytest.approx(max(-width, width - PLACEMENT.double_support_speedup_width, 0.0))
+    assert excess == pytest.approx(max(-width, width - PLACEMENT.speedup_width, 0.0))
 
 
 def test_a_foot_that_is_itself_across_does_not_hurry_to_cross() -> None:

@@ -89,8 +89,20 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
     assert speed <= forward
     if length <= 0.0:
         assert speed <= 0.0
-    if length >= forward * TIMING.step > 0.0:
+    if length >= forward * TIMING.at_speed(forward).step > 0.0:
         assert speed == forward
+
+
+@given(st.floats(0.3, 1.5), st.floats(0.1, 1.0))
+def test_the_rollover_after_an_ordinary_step_is_the_same_before_a_careful_one(forward: float, length: float) -> None:
+    goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
+    ordinary, careful = (
+        rollover(
+            state_at(0.0)._replace(timing=TIMING.at_speed(forward, caution)), OLD, goal, Command(forward), PARAMETERS
+        )
+        for caution in (0.0, 1.0)
+    )
+    assert careful == ordinary
 
 
 @given(st.floats(-0.2, 0.2))
