@@ -42,7 +42,7 @@ def critical(stiffness: float, weight: float) -> TaskGains:
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(300.0, "", 0.0, 1e5)
+    com_weight: float = quantity(600.0, "", 0.0, 1e5)
     """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
 
@@ -111,7 +111,7 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(5.5, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(5.0, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""

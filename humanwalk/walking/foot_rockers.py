@@ -1,5 +1,6 @@
 """How a loaded foot rolls: over the heel after touchdown, over the ball before toe-off (Perry's rockers)."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -32,18 +33,22 @@ class FootRockers:
     heel: float = quantity(0.142, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.26, "s", 0.0, 0.3)
-    """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster; proportional to the speed
-    below, because a walker on its toes cannot move the zero-moment point back."""
+    ball: float = quantity(0.25, "s", 0.0, 0.3)
+    """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
+    a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.3, "rad", 0.0, 1.7)
-    """Pitch of the foot at toe-off at `full_pitch_speed` and faster; proportional to the speed below."""
+    pitch: float = quantity(1.25, "rad", 0.0, 1.7)
+    """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 
     full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
     """Forward speed from which on the heel rises earliest and the pitch at toe-off is greatest."""
+
+    speed_exponent: float = quantity(0.67, "", 0.0, 2.0)
+    """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
+    too little at 0.9 m/s, with 0 too much (docs/likeness.md)."""
 
     late_rise: float = quantity(1.0, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
@@ -64,7 +69,8 @@ class FootRockers:
         return self.ball * self._share(speed)
 
     def _share(self, speed: float) -> float:
-        return clip(speed / self.full_pitch_speed, 0.0, 1.0)
+        """Share of `ball` and `pitch` at a forward speed [m/s]."""
+        return math.pow(clip(speed / self.full_pitch_speed, 0.0, 1.0), self.speed_exponent)
 
     def over_heel(self, yaw: float, R_WS: Array) -> FootReference:
         """Reference of a foot that has just landed on ground with the axes R_WS."""

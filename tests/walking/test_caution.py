@@ -46,7 +46,7 @@ def test_equal_errors_switch_from_ordinary_to_careful_steps() -> None:
 
 
 def test_errors_in_descending_order_are_refused() -> None:
-    with pytest.raises(ParameterError, match=r"full_error: 0\.1 is too small; allowed: free_error, 0\.15 m, or more"):
+    with pytest.raises(ParameterError, match=r"full_error: 0\.1 is too small; allowed: free_error, 0\.2 m, or more"):
         Caution(full_error=0.1)
 
 

@@ -27,9 +27,19 @@ def test_heels_rise_above_a_minimum_forward_speed() -> None:
 def test_the_heel_rises_from_flat_to_its_pitch() -> None:
     assert over_ball(0.0).pitch[:2] == pytest.approx((0.0, 0.0))
     assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT).pitch[0] == pytest.approx(ROCKERS.pitch)
-    assert over_ball(ROCKERS.ball + DOUBLE_SUPPORT, 0.6 * ROCKERS.full_pitch_speed).pitch[0] == pytest.approx(
-        0.6 * ROCKERS.pitch
-    )
+
+
+@given(st.floats(0.01, 1.0), st.floats(0.0, 2.0))
+def test_pitch_and_lead_follow_a_power_of_the_speed(share: float, exponent: float) -> None:
+    rockers, speed = FootRockers(speed_exponent=exponent), share * ROCKERS.full_pitch_speed
+    expected = share**exponent
+    assert over_ball(rockers.ball + DOUBLE_SUPPORT, speed, rockers).pitch[0] == pytest.approx(expected * rockers.pitch)
+    assert rockers.lead(speed) == pytest.approx(expected * rockers.ball)
+
+
+@given(st.floats(1.0, 2.0))
+def test_pitch_and_lead_are_greatest_from_the_full_pitch_speed_on(share: float) -> None:
+    assert ROCKERS.lead(share * ROCKERS.full_pitch_speed) == ROCKERS.ball
 
 
 def test_a_heel_that_rises_late_has_the_same_pitch_at_toe_off() -> None:
