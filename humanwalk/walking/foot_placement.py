@@ -45,8 +45,8 @@ class StepPlacement:
     """Sideways distance at which a foot that comes from across passes the stance foot."""
 
     max_com_distance: float = quantity(0.38, "m", 0.1, 1.0)
-    """Largest distance of a foothold ahead of or behind the center of mass at touchdown: beyond, the stretched leg does
-    not reach the ground in time."""
+    """Largest distance of a foothold ahead of or behind the center of mass at touchdown. A foot that lands farther
+    ahead brakes the body so much that it falls backward (docs/balance.md, "What a push teaches")."""
 
     max_length: float = quantity(1.0, "m", 0.1, 2.0)
     """Largest distance of a foothold ahead of or behind the stance foot."""
@@ -107,8 +107,8 @@ class StepPlacement:
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].
 
-        It calls for one if it is wider than `speedup_width`, or across the stance foot. A foot that is
-        itself across has to come out from behind before it can step across.
+        It calls for one if it is wider than `speedup_width`, or across the stance foot. A foot that is itself across
+        has to come out from behind before it can step across.
 
         Args: See `within_reach`.
         """

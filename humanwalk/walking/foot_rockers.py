@@ -48,7 +48,7 @@ class FootRockers:
 
     speed_exponent: float = quantity(0.67, "", 0.0, 2.0)
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
-    too little at 0.9 m/s, with 0 too much (docs/likeness.md)."""
+    too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness.md)."""
 
     late_rise: float = quantity(1.0, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""

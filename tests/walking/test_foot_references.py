@@ -51,7 +51,7 @@ def test_the_stance_foot_rolls_from_heel_strike_to_heel_off(elapsed: float, step
 
 @given(st.floats(0.3, 1.0))
 def test_the_heel_rises_later_the_slower_the_walk(speed: float) -> None:
-    lead = ROCKERS.lead(speed)
+    lead = (speed / ROCKERS.full_pitch_speed) ** ROCKERS.speed_exponent * ROCKERS.ball
     for before, task in ((1.01 * lead, FootTask.FLAT), (0.99 * lead, FootTask.HEEL_OFF)):
         state, swing = state_at(TIMING.step - before), swing_to(NEXT)
         assert stance_foot(state, swing, Command(speed), PARAMETERS).task is task
