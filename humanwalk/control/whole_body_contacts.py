@@ -70,7 +70,7 @@ class Soles:
         p_W = X_WB[:, :, 3] + r_W
         xy = p_W[:, :2]
         R_SW = ground.axes(xy)
-        return SolesOnGround(self, r_W, (p_W[:, 2] - ground.height(xy)) * R_SW[:, 2, 2], R_SW, ground.friction(xy))
+        return SolesOnGround(self, p_W, r_W, (p_W[:, 2] - ground.height(xy)) * R_SW[:, 2, 2], R_SW, ground.friction(xy))
 
 
 class SolesOnGround(NamedTuple):
@@ -78,6 +78,7 @@ class SolesOnGround(NamedTuple):
 
     Attributes:
         soles: the points.
+        p_W: in W [m], (k + 4, 3).
         r_W: from the origin of each point's body to the point, in W [m], (k + 4, 3).
         height: above the ground along its normal [m], (k + 4,).
         R_SW: axes of the ground below each point, (k + 4, 3, 3).
@@ -85,6 +86,7 @@ class SolesOnGround(NamedTuple):
     """
 
     soles: Soles
+    p_W: Array
     r_W: Array
     height: Array
     R_SW: Array
@@ -122,7 +124,8 @@ class SolesOnGround(NamedTuple):
         share = np.maximum(load[points], MIN_LOAD)
         edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
         J_edges = edges_W @ J_points
-        return Contacts(points, load[points] / np.sqrt(share), edges_W, J_edges.reshape(-1, J.shape[-1]))
+        J_edges = J_edges.reshape(-1, J.shape[-1])
+        return Contacts(points, soles.side[points], self.p_W[points], load[points] / np.sqrt(share), edges_W, J_edges)
 
 
 def friction_edges(mu: Array, unit: float) -> Array:
@@ -142,12 +145,16 @@ class Contacts(NamedTuple):
 
     Attributes:
         points: indices of the points, (c,).
+        side: index of the foot of each point in SIDES, (c,).
+        p_W: the points in W [m], (c, 3).
         max_share: largest force along each edge, per length of the edge and largest force at full load, (c,).
         edges_W: edges of each point's friction pyramid in W, (c, edges, 3).
         J_edges: Jacobian of the velocities along all edges, (c x edges, nv).
     """
 
     points: Indices
+    side: Indices
+    p_W: Array
     max_share: Array
     edges_W: Array
     J_edges: Array
@@ -156,3 +163,12 @@ class Contacts(NamedTuple):
         """Force on each point in W, (c, 3), from the forces along all edges, (c x edges,)."""
         forces: Array = (edge_forces.reshape(*self.edges_W.shape[:2], 1) * self.edges_W).sum(axis=1)
         return forces
+
+    def across(self, p_WV: Array) -> Array:
+        """Parts of the edges across the lines from the points to a point V in W [m], by foot, (c x edges, feet x 3)."""
+        along = p_WV - self.p_W
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        across = self.edges_W - (self.edges_W @ along[:, :, None]) * along[:, None, :]
+        is_of_foot = self.side[:, None] == np.arange(len(SIDES))
+        by_foot: Array = across[:, :, None, :] * is_of_foot[:, None, :, None]
+        return by_foot.reshape(-1, 3 * len(SIDES))

@@ -39,10 +39,27 @@ def critical(stiffness: float, weight: float) -> TaskGains:
 
 
 @dataclass(frozen=True)
+class ForcePivot:
+    """The point above the center of mass to which the force on each foot points while both feet are loaded.
+
+    In people the lines of the forces of single support meet in such a point (Maus et al. 2010, Nature Communications
+    1:70). In double support the sum of both forces points to the center of mass (Vielemeyer et al. 2021, J. Biomech.
+    120:110387); how the feet share it decides the moments of the hips (docs/decisions/0036-force-pivot.md).
+    """
+
+    height: float = quantity(1.0, "m", 0.0, 2.0)
+    """Height above the center of mass."""
+
+    unit: float = quantity(4.0, "N", 0.5, 1e6)
+    """Part of the force of a foot across its line that costs as much as an acceleration error of 1 m/s2 with the weight
+    1; the cost fades as the foot behind is unloaded."""
+
+
+@dataclass(frozen=True)
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(600.0, "", 0.0, 1e5)
+    com_weight: float = quantity(710.0, "", 0.0, 1e5)
     """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
 
@@ -59,13 +76,13 @@ class WholeBodyParameters:
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
     """Speed at which a stance foot that is still in the air moves toward the ground."""
 
-    heel_strike: TaskGains = critical(1200.0, 1000.0)
+    heel_strike: TaskGains = critical(1400.0, 1000.0)
     """Rotation of a foot after heel strike."""
 
-    heel_off: TaskGains = critical(400.0, 40.0)
+    heel_off: TaskGains = critical(400.0, 27.0)
     """Pitch of a foot whose heel rises."""
 
-    swing_position: TaskGains = critical(300.0, 60.0)
+    swing_position: TaskGains = critical(300.0, 50.0)
     """Position of the swing ankle."""
 
     swing_rotation: TaskGains = critical(400.0, 20.0)
@@ -77,7 +94,7 @@ class WholeBodyParameters:
     pelvis: TaskGains = critical(200.0, 2.5)
     """Rotation of the pelvis."""
 
-    chest: TaskGains = critical(150.0, 10.0)
+    chest: TaskGains = critical(150.0, 13.0)
     """Rotation of the chest."""
 
     spine: TaskGains = critical(100.0, 0.3)
@@ -101,7 +118,7 @@ class WholeBodyParameters:
     contact_height: float = quantity(0.008, "m", 0.001, 0.05)
     """Height of a contact point above the ground from which on it carries no force."""
 
-    knee_margin: float = quantity(0.05, "rad", 0.0, 0.5)
+    knee_margin: float = quantity(0.086, "rad", 0.0, 0.5)
     """Flexion at which the knee's range ends here; a straight leg cannot be shortened."""
 
     rotation_radius: float = quantity(1.0, "m", 0.01, 10.0)
@@ -111,10 +128,13 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(5.0, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(4.4, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""
+
+    force_pivot: ForcePivot = ForcePivot()
+    """Directions of the forces in double support."""
 
     max_contact_force: float = quantity(1500.0, "N", 100.0, 1e5)
     """Maximum force along each edge (our choice): twice the weight of the body."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.body import SIDES
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.impairments import NO_TORQUE
 from humanwalk.body.limbs import JOINT_GROUPS, LEGS
@@ -156,6 +157,7 @@ class WholeBodyQp:
 
         # Each force along an edge costs its square.
         H, g = np.eye(k + m), np.zeros(k + m)
+        H[:k, :k] += _pivot_cost(contacts, body, reference, p)
         J, a, w = tasks(body, soles, reference, p, self._passive_ankles, style.motions)
         a -= J[:, m:] @ prescribed
         J = J[:, :m]
@@ -183,6 +185,15 @@ class WholeBodyQp:
             self._torque_range - load,
         )
         return QuadraticProgram(H, g, A, *np.hstack(bounds)), prescribed, contacts
+
+
+def _pivot_cost(contacts: Contacts, body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Array:
+    """Cost of forces that do not point to the pivot, while both feet are loaded, (edges, edges)."""
+    pivot = body.com.position + np.array((0.0, 0.0, p.force_pivot.height))
+    across = contacts.across(pivot) / p.force_pivot.unit
+    first, second = (reference.foot(side).load for side in SIDES)
+    both = 4.0 * first * second / (first + second) ** 2 if np.unique(contacts.side).size == len(SIDES) else 0.0
+    return both * across @ across.T
 
 
 def _posture_gains(parameters: WholeBodyParameters) -> Mapping[str, TaskGains]:

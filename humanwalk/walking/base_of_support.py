@@ -18,13 +18,13 @@ corrections (our choice)."""
 class BaseOfSupport:
     """The part of a foot that the zero-moment point may use, relative to the ankle."""
 
-    center: float = quantity(0.03, "m", -0.05, 0.1)
+    center: float = quantity(0.039, "m", -0.05, 0.1)
     """Distance of the nominal zero-moment point ahead of the ankle."""
 
-    roll: float = quantity(0.095, "s", 0.0, 0.3)
+    roll: float = quantity(0.096, "s", 0.0, 0.3)
     """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
-    pivot: float = quantity(0.07, "s", 0.0, 0.2)
+    pivot: float = quantity(0.067, "s", 0.0, 0.2)
     """Distance of the centroidal moment pivot behind the nominal zero-moment point when a foot leaves the ground, and
     ahead of it at touchdown, per speed: the rate of the angular momentum of the swinging leg, over the weight."""
 
@@ -35,7 +35,7 @@ class BaseOfSupport:
     back: float = quantity(0.04, "m", 0.0, 0.1)
     """Limit behind the ankle."""
 
-    ball: float = quantity(0.09, "m", 0.0, 0.2)
+    ball: float = quantity(0.088, "m", 0.0, 0.2)
     """Lower limit ahead of the ankle while the heel is up."""
 
     front: float = quantity(0.2, "m", 0.0, 0.4)

@@ -12,10 +12,10 @@ from humanwalk.walking.walking_reference import BodyState
 class CounterRotation:
     """Angles per distance between the feet along the heading, and the drop of the pelvis per speed."""
 
-    pelvis: float = quantity(0.12, "rad/m", 0.0, 1.0)
+    pelvis: float = quantity(0.09, "rad/m", 0.0, 1.0)
     """Yaw of the pelvis, with the leading leg."""
 
-    drop: float = quantity(0.06, "rad s/m", 0.0, 0.3)
+    drop: float = quantity(0.045, "rad s/m", 0.0, 0.3)
     """Largest drop of the pelvis toward the swinging leg per forward speed; people have 0.06 (Schwartz et al. 2008)."""
 
     drop_share: float = quantity(0.9, "", 0.1, 1.0)

@@ -30,23 +30,23 @@ class Rollover(NamedTuple):
 class FootRockers:
     """Rolling over heel and ball."""
 
-    heel: float = quantity(0.142, "s", 0.02, 0.4)
+    heel: float = quantity(0.13, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.25, "s", 0.0, 0.3)
+    ball: float = quantity(0.24, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
     a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.25, "rad", 0.0, 1.7)
+    pitch: float = quantity(1.29, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 
     full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
     """Forward speed from which on the heel rises earliest and the pitch at toe-off is greatest."""
 
-    speed_exponent: float = quantity(0.67, "", 0.0, 2.0)
+    speed_exponent: float = quantity(0.7, "", 0.0, 2.0)
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
     too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness.md)."""
 

@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from humanwalk.body.contact import SoleExtent
-from humanwalk.gait.splines import CubicHermite, hermite_tangents
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
@@ -23,27 +23,27 @@ MAX_TOE_UP = 0.442
 class SwingParameters:
     """Shape of the swing."""
 
-    lift: float = quantity(0.03, "m", 0.0, 0.3)
+    lift: float = quantity(0.031, "m", 0.0, 0.3)
     """Rise of the ankle above its height at toe-off in an ordinary step."""
 
-    mid_height: float = quantity(0.55, "", 0.2, 1.0)
+    mid_height: float = quantity(0.51, "", 0.2, 1.0)
     """Height of the ankle at half of the swing, relative to its apex at a quarter. In people, whose ankle rises at
     heel-off, it is 0.5 (docs/likeness.md)."""
 
-    late_height: float = quantity(0.23, "", 0.0, 1.0)
+    late_height: float = quantity(0.18, "", 0.0, 1.0)
     """The same at three quarters of the swing; in people 0.2."""
 
-    early_pitch: float = quantity(0.0, "", -0.5, 0.5)
+    early_pitch: float = quantity(-0.023, "", -0.5, 0.5)
     """Pitch at a quarter of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
     in people it is -0.14 at a slow and 0.04 at a free speed."""
 
-    mid_pitch: float = quantity(0.43, "", 0.0, 1.0)
+    mid_pitch: float = quantity(0.445, "", 0.0, 1.0)
     """The same at half of the swing; in people 0.39 at a slow and 0.46 at a free speed."""
 
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
     """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
 
-    toe_up: float = quantity(0.26, "rad s/m", 0.0, 0.6)
+    toe_up: float = quantity(0.262, "rad s/m", 0.0, 0.6)
     """Pitch at touchdown per forward speed, toes up: 21 degrees at 1.4 m/s."""
 
     heel_height: float = quantity(0.0, "", 0.0, 1.0)
@@ -53,13 +53,13 @@ class SwingParameters:
     landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    push_off: float = quantity(7.35, "1/m", 0.0, 30.0)
+    push_off: float = quantity(7.86, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
-    landing_speed_ratio: float = quantity(0.55, "", 0.0, 1.0)
+    landing_speed_ratio: float = quantity(0.59, "", 0.0, 1.0)
     """Horizontal speed at touchdown, relative to the speed of the walk."""
 
-    landing_deceleration: float = quantity(20.5, "1/s", 0.0, 50.0)
+    landing_deceleration: float = quantity(19.5, "1/s", 0.0, 50.0)
     """Horizontal deceleration at touchdown, per speed of the walk."""
 
     landing_depth: float = quantity(0.003, "m", 0.0, 0.05)
@@ -94,7 +94,10 @@ class SwingParameters:
 
 @dataclass(frozen=True)
 class SwingProfile:
-    """Height of the ankle and pitch of the foot over the progress from 0 at toe-off to 1 at touchdown."""
+    """Height of the ankle and pitch of the foot over the progress from 0 at toe-off to 1 at touchdown.
+
+    Their accelerations are continuous: a jump is one of the ankle's, knee's and hip's moment.
+    """
 
     pieces: tuple[tuple[Cubic, Cubic], ...]
     """Height [m] and pitch [rad] over equal parts of the progress."""
@@ -125,11 +128,11 @@ class SwingProfile:
         shape = np.array((0.0, parameters.early_pitch, parameters.mid_pitch, LATE_PITCH, 1.0))
         pitches = foot.pitch + shape * (-toe_up - foot.pitch)
         points = np.column_stack((heights, pitches))
-        tangents = hermite_tangents(points)
         quarter = duration / (len(points) - 1)
-        tangents[0] = foot.height_rate * quarter, foot.pitch_rate * quarter
-        tangents[-1] = -parameters.landing_sink_rate * quarter, 0.0
-        coefficients = CubicHermite(points, tangents).coefficients.tolist()
+        first = quarter * np.array((foot.height_rate, foot.pitch_rate))
+        last = quarter * np.array((-parameters.landing_sink_rate, 0.0))
+        spline = CubicSpline(np.arange(len(points)), points, bc_type=((1, first), (1, last)))
+        coefficients = spline.c[::-1].transpose(1, 2, 0).tolist()
         return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients))
 
     def lowest(self, progress: float, flat_height: float, sole: SoleExtent) -> float:

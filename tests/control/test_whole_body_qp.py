@@ -15,7 +15,7 @@ from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
-from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.control.whole_body_parameters import ForcePivot, WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.control.whole_body_tasks import StyleTasks, TorqueTask
 from humanwalk.numerics import Array
@@ -333,8 +333,9 @@ def in_double_support(dynamics: BodyDynamics, skeleton: Skeleton) -> Dynamics:
 def test_with_effort_the_legs_do_not_work_against_each_other(dynamics: BodyDynamics, skeleton: Skeleton) -> None:
     """In double support the tasks leave the forces along the line between the feet free: the foot behind pushes."""
     body = in_double_support(dynamics, skeleton)
+    undirected = replace(PARAMETERS, force_pivot=ForcePivot(unit=1e6))
     free, effort = (
-        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, torque_unit=unit)) for unit in (1e5, 7.0)
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(undirected, torque_unit=unit)) for unit in (1e5, 7.0)
     )
     before, after = (program.solve(body, reference_for(body), rest(program)) for program in (free, effort))
     assert after.forces.sum(axis=0) == pytest.approx(before.forces.sum(axis=0), rel=0.02, abs=1.0)
@@ -343,6 +344,44 @@ def test_with_effort_the_legs_do_not_work_against_each_other(dynamics: BodyDynam
     assert after.forces[behind, 0].sum() > before.forces[behind, 0].sum() + 20.0
     hips = [effort.names.index(leg.hip_flexion) for leg in LEGS.values()]
     assert np.linalg.norm(after.torque[hips]) < 0.8 * np.linalg.norm(before.torque[hips])
+
+
+def test_in_double_support_the_force_on_each_foot_points_to_the_pivot(
+    dynamics: BodyDynamics, skeleton: Skeleton
+) -> None:
+    body = in_double_support(dynamics, skeleton)
+    height = 0.5
+    free, pointed = (
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, force_pivot=ForcePivot(height, unit)))
+        for unit in (1e6, 1.0)
+    )
+    before, after = (program.solve(body, reference_for(body), rest(program)) for program in (free, pointed))
+    assert after.forces.sum(axis=0) == pytest.approx(before.forces.sum(axis=0), rel=0.02, abs=2.0)
+    pivot = body.com.position + np.array((0.0, 0.0, height))
+    points = sole_points(body, skeleton)
+
+    def across(forces: Array) -> list[float]:
+        """Of each foot: part of its force across the line from its center of pressure to the pivot, per force."""
+        parts = []
+        for foot in (slice(0, 6), slice(6, 12)):
+            force, load = forces[foot].sum(axis=0), forces[foot, 2]
+            line = pivot - load @ points[foot] / load.sum()
+            parts.append(np.linalg.norm(np.cross(force, line)) / np.linalg.norm(force) / np.linalg.norm(line))
+        return parts
+
+    assert max(across(after.forces)) < 0.02
+    assert max(across(before.forces)) > 0.05
+
+
+def test_the_force_on_one_foot_points_anywhere(dynamics: BodyDynamics, skeleton: Skeleton) -> None:
+    body = in_double_support(dynamics, skeleton)
+    alone = replace(reference_for(body), left=FootReference(FootTask.FLAT, 0.0, 0.0, LEVEL.axes(np.zeros(2)).T))
+    free, pointed = (
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, force_pivot=ForcePivot(unit=unit)))
+        for unit in (1e6, 1.0)
+    )
+    programs = [program.program(body, alone, rest(program))[0] for program in (free, pointed)]
+    assert np.array_equal(programs[0].H, programs[1].H)
 
 
 def test_torques_of_a_style_are_followed(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
