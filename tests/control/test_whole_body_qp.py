@@ -102,7 +102,7 @@ def newton_residual(body: Dynamics, solution: Any, skeleton: Skeleton) -> Array:
 def test_in_standing_the_contact_forces_carry_the_weight(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
-    assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=2.0)
+    assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=0.005 * WEIGHT)
 
 
 def test_the_floating_base_obeys_newton(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
@@ -417,7 +417,7 @@ def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynami
     acceleration = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[3:]
     normal = terrain.axes(np.zeros(2))[2]
     assert normal @ acceleration < -1.0
-    assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.1)
+    assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.15)
 
 
 def impaired(subject: Subject) -> tuple[BodyDynamics, WholeBodyQp]:

@@ -313,7 +313,7 @@ def test_the_pitch_at_toe_off_is_smaller_after_a_short_step() -> None:
 
 
 def test_in_a_backward_step_the_feet_leave_the_ground_flat() -> None:
-    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.2, push=(4.0, -1.2 + 0j)):
+    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 5.2, push=(4.0, -1.6 + 0j)):
         behind = (state.old_foot.position - state.stance_foot.position).real < 0.0
         if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and not behind:
             assert reference.foot(state.swing_side).task is FootTask.FLAT
