@@ -99,10 +99,15 @@ def newton_residual(body: Dynamics, solution: Any, skeleton: Skeleton) -> Array:
     return total
 
 
-def test_in_standing_the_contact_forces_carry_the_weight(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
+@pytest.mark.parametrize("torque_unit, bound", [(1e5, 2.0), (PARAMETERS.torque_unit, 0.005 * WEIGHT)])
+def test_in_standing_the_contact_forces_carry_the_weight(
+    dynamics: BodyDynamics, skeleton: Skeleton, torque_unit: float, bound: float
+) -> None:
+    """The cost of the torques lets bent legs yield a little."""
+    qp = WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, torque_unit=torque_unit))
     body = body_at(dynamics)
     solution = qp.solve(body, reference_for(body), rest(qp))
-    assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=0.005 * WEIGHT)
+    assert solution.forces.sum(axis=0) == pytest.approx([0.0, 0.0, WEIGHT], abs=bound)
 
 
 def test_the_floating_base_obeys_newton(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
@@ -254,12 +259,12 @@ def test_on_ice_forces_use_a_share_of_its_friction(dynamics: BodyDynamics, qp: W
     assert np.abs(f[:, 0]).sum() == pytest.approx(usable * f[:, 2].sum(), rel=0.01)
 
 
-def on_slope(dynamics: BodyDynamics, slope: float, foot_pitch: float = 0.0) -> Dynamics:
+def on_slope(dynamics: BodyDynamics, slope: float, foot_pitch: float = 0.0, flexion: float = 0.12) -> Dynamics:
     """Standing with bent knees on a plane with a slope along x, feet pitched relative to the plane.
 
     The pelvis is turned with the plane, so that both legs are as on level ground.
     """
-    q = body_at(dynamics).q.copy()
+    q = body_at(dynamics, flexion).q.copy()
     R = yaw_pitch(0.0, -slope)
     q[:4] = (np.cos(0.5 * slope), 0.0, -np.sin(0.5 * slope), 0.0)
     q[4:7] = R @ q[4:7]
@@ -412,12 +417,13 @@ def test_a_force_costs_its_square_over_the_load_of_its_foot(
 def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
     slope = 0.2
     terrain = Plane(slope=slope)
-    body = raised(dynamics, on_slope(dynamics, slope), 0.05)
+    # Knees that are bent enough for the foot to go down.
+    body = raised(dynamics, on_slope(dynamics, slope, flexion=0.15), 0.05)
     solution = qp.solve(body, reference_for(body, terrain=terrain), rest(qp))
     acceleration = (body.frame(LEGS["Right"].hindfoot).J @ solution.acceleration)[3:]
     normal = terrain.axes(np.zeros(2))[2]
     assert normal @ acceleration < -1.0
-    assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.15)
+    assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.1)
 
 
 def impaired(subject: Subject) -> tuple[BodyDynamics, WholeBodyQp]:
