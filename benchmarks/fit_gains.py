@@ -1,32 +1,37 @@
-"""Fits gains of the balanced walk to people's curves: python benchmarks/fit_gains.py [walk|normative] [GAIN ...]
+"""Fits gains of the balanced walk to people's curves: python benchmarks/fit_gains.py [SCENARIO [GAIN ...]]
 
 Least squares over the nine curves of the score, at three speeds on both contact models, and over limits of single
 measures. An iteration changes every gain once: some ten minutes on two cores. Prints the gains after every iteration.
-A GAIN is a part of a name, such as `swing`; without any, all of GAINS are fitted.
+
+SCENARIO is `walk`, `normative` or a file; default: `walk`. A GAIN is a part of a name, such as `swing`; without any,
+all of GAINS are fitted.
 """
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import product
+from functools import partial
+from itertools import batched, product
+from typing import NamedTuple
 
 import numpy as np
 from dask.distributed import Client
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from humanwalk.cli.common import counted_progress
+from humanwalk.gait.normative import CYCLE
 from humanwalk.measures.curves import CURVES
 from humanwalk.measures.human_likeness import SCORED
 from humanwalk.measures.walk_measures import MEASURES, Walk
 from humanwalk.numerics import Array
-from humanwalk.parameter_file import plain
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, numbers_of
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.study.cluster import local_client
 
 CASES = tuple(product(("point", "hydroelastic"), (0.9, 1.2, 1.4)))
 """Contact model and speed [m/s] of the walks."""
+
+SPEED = "controller.balanced.command.points.0.forward"
 
 DURATION = "11.5"
 """Of a walk [s]: some four strides of each leg after the walk is steady."""
@@ -37,19 +42,18 @@ EVERY = 2
 FALLEN = 10.0
 """Error of every point of a walk that fell, or that cannot be compared."""
 
-MAX_STEPS = 20
-"""Largest number of gains that are tried."""
+MAX_TRIALS = 20
+"""Largest number of sets of gains that are tried, besides those that are changed one by one."""
 
 LIMIT_WEIGHT = 3.0
 """Weight of the error of a measure against that of a point of a curve."""
 
 
-@dataclass(frozen=True)
-class Gain:
+class Gain(NamedTuple):
     """A gain that is fitted.
 
     Attributes:
-        step: change from which its effect is measured; large against the differences between strides.
+        step: change from which its effect is measured; its effect is large against the differences between strides.
         low, high: its range.
     """
 
@@ -112,116 +116,108 @@ LIMITS: Mapping[str, tuple[float, float, float]] = {
 
 def errors(scenario: Scenario) -> Array:
     """Of one walk: mean strides less people's in standard deviations, then the weighted errors of LIMITS."""
-    size = len(SCORED) * len(range(0, 101, EVERY)) + len(LIMITS)
+    size = len(SCORED) * len(CYCLE[::EVERY]) + len(LIMITS)
     try:
         outcome = simulate(scenario)
-        walk = Walk.of(outcome.signals, scenario)
-        if not outcome.survived or not all(foot.strides for foot in walk.feet.values()):
-            return np.full(size, FALLEN)
-        bands = [CURVES[curve].people(walk.pace.group, walk.pace.leg) for curve in SCORED]
-        strides = [walk.strides(curve).mean(axis=0) for curve in SCORED]
-        measured = {kind.name: kind.of_walk(walk).value for kind in MEASURES if kind.name in LIMITS}
     except ParameterError:
         return np.full(size, FALLEN)
+    if not outcome.survived:
+        return np.full(size, FALLEN)
+    walk = Walk.of(outcome.signals, scenario)
+    if not all(foot.strides for foot in walk.feet.values()):
+        return np.full(size, FALLEN)
+    bands = [CURVES[curve].people(walk.pace.group, walk.pace.leg) for curve in SCORED]
+    strides = [walk.strides(curve).mean(axis=0) for curve in SCORED]
     curves = [((mean - band.mean) / band.sd)[::EVERY] for mean, band in zip(strides, bands, strict=True)]
-    limits = [(v - min(max(v, low), high)) / unit for v, (low, high, unit) in zip_by_name(measured, LIMITS)]
+    measured = [(kind.of_walk(walk).value, *LIMITS[kind.name]) for kind in MEASURES if kind.name in LIMITS]
+    limits = [(value - min(max(value, low), high)) / unit for value, low, high, unit in measured]
     return np.concatenate((*curves, LIMIT_WEIGHT * np.array(limits)))
 
 
-def zip_by_name[A, B](first: Mapping[str, A], second: Mapping[str, B]) -> list[tuple[A, B]]:
-    """Pairs of the values with the same name, in the order of the second."""
-    return [(first[name], second[name]) for name in second]
-
-
 def saturating(squares: Array) -> Array:
-    """Geman and McClure's loss z / (1 + z) of squared errors, with two derivatives: two SD count half of the most."""
+    """Geman and McClure's loss z / (1 + z) of squared errors z, and its first two derivatives, (3, errors)."""
     return np.array((squares / (1.0 + squares), (1.0 + squares) ** -2, -2.0 * (1.0 + squares) ** -3))
 
 
-@dataclass(frozen=True)
 class Fit:
-    """Errors of the walks as a function of the gains, in steps from their values in a scenario.
+    """Errors of the walks as a function of the gains, in steps from their values in a scenario."""
 
-    Attributes:
-        scenario: name of the scenario.
-        gains: names of the gains.
-        start: their values in the scenario.
-        client: of the workers.
-    """
+    def __init__(self, scenario: str, parts: Sequence[str], client: Client) -> None:
+        """Prepare the fit.
 
-    scenario: str
-    gains: Sequence[str]
-    start: Array
-    client: Client
+        Args:
+            scenario: name or path.
+            parts: of the names of the gains that are fitted; all without any.
+            client: of the workers.
 
-    def values(self, steps: Array) -> Array:
+        Raises:
+            ParameterError: the scenario cannot be used, or no gain has such a name.
+        """
+        self.scenario, self.client = scenario, client
+        self.names = [name for name in GAINS if not parts or any(part in name for part in parts)]
+        if not self.names:
+            raise ParameterError(
+                f"GAIN: {' '.join(parts)}; allowed: parts of the names in GAINS; take swing or torque_unit"
+            )
+        start = {name: value for name, value, _ in numbers_of(load_scenario(scenario))}
+        missing = [name for name in self.names if name not in start]
+        if missing:
+            raise ParameterError(f"SCENARIO: {scenario} has no {missing[0]}; allowed: balanced walks; take walk")
+        self._start = np.array([start[name] for name in self.names])
+        self._step, self._low, self._high = np.array([GAINS[name] for name in self.names]).T
+
+    def gains(self, steps: Array) -> dict[str, float]:
         """Gains at a number of steps from the start, within their ranges."""
-        gains = [GAINS[name] for name in self.gains]
-        found = self.start + steps * [gain.step for gain in gains]
-        return np.clip(found, [gain.low for gain in gains], [gain.high for gain in gains])
+        values = np.clip(self._start + steps * self._step, self._low, self._high)
+        return dict(zip(self.names, values.tolist(), strict=True))
 
-    def errors(self, points: Sequence[Array]) -> list[Array]:
-        """Errors of all cases, at several points."""
+    def errors(self, *points: Array) -> list[Array]:
+        """Errors of all cases, one array per point."""
         jobs = [self.client.submit(errors, walk, pure=False) for point in points for walk in self.walks(point)]
         with counted_progress("walks", estimate_period=600.0) as progress:
-            task = progress.add_task(self.scenario, total=len(jobs))
-            found = []
-            for job in jobs:
-                found.append(job.result())
-                progress.advance(task)
-        return [np.concatenate(found[i : i + len(CASES)]) for i in range(0, len(found), len(CASES))]
+            found = list(progress.track((job.result() for job in jobs), total=len(jobs), description=self.scenario))
+        return [np.concatenate(cases) for cases in batched(found, len(CASES))]
 
     def walks(self, point: Array) -> list[Scenario]:
         """The walks of all cases."""
-        gains = {name: repr(float(value)) for name, value in zip(self.gains, self.values(point), strict=True)}
-        speed = "controller.balanced.command.points.0.forward"
-        return [
-            load_scenario(self.scenario, {**gains, "duration": DURATION, "contact": contact, speed: str(forward)})
-            for contact, forward in CASES
-        ]
+        common = {name: repr(value) for name, value in self.gains(point).items()} | {"duration": DURATION}
+        return [load_scenario(self.scenario, {**common, "contact": on, SPEED: str(v)}) for on, v in CASES]
 
     def at(self, point: Array) -> Array:
         """Errors at one point."""
-        return self.errors([point])[0]
+        return self.errors(point)[0]
 
     def slopes(self, point: Array) -> Array:
         """Changes of the errors by one step of every gain, (errors, gains)."""
-        here, *beside = self.errors([point, *(point + np.eye(len(point)))])
-        return np.array([there - here for there in beside]).T
+        here, *beside = self.errors(point, *(point + np.eye(len(point))))
+        return np.array(beside).T - here[:, None]
 
 
-def main(scenario: str, parts: Sequence[str]) -> None:
+def show(fit: Fit, intermediate_result: OptimizeResult) -> None:
+    """Print the gains and the loss of an iteration."""
+    for name, value in fit.gains(intermediate_result.x).items():
+        print(f"{name}: {value:.4g}")
+    print(f"loss {intermediate_result.cost:.1f}\n", flush=True)
+
+
+def main(scenario: str = "walk", *parts: str) -> None:
     """Fit the gains whose names contain one of the parts, and print them."""
-    names = [name for name in GAINS if not parts or any(part in name for part in parts)]
-    if not names:
-        sys.exit(f"fit_gains: {' '.join(parts)}: no such gain; allowed: parts of {', '.join(GAINS)}")
-    defaults = plain(load_scenario(scenario))
     with local_client() as client:
-        fit = Fit(scenario, names, np.array([_value(defaults, name) for name in names]), client)
-
-        def show(intermediate_result: object) -> None:
-            for name, value in zip(names, fit.values(intermediate_result.x), strict=True):  # type: ignore[attr-defined]
-                print(f"{name}: {value:.4g}")
-            print(f"loss {intermediate_result.cost:.1f}\n", flush=True)  # type: ignore[attr-defined]
-
+        fit = Fit(scenario, parts, client)
         least_squares(
             fit.at,
-            np.zeros(len(names)),
+            np.zeros(len(fit.names)),
             jac=fit.slopes,
             loss=saturating,
             f_scale=2.0,
             x_scale=3.0,
-            max_nfev=MAX_STEPS,
-            callback=show,
+            max_nfev=MAX_TRIALS,
+            callback=partial(show, fit),
         )
 
 
-def _value(parameters: object, name: str) -> float:
-    for part in name.split("."):
-        parameters = parameters[part]  # type: ignore[index]
-    return float(parameters)  # type: ignore[arg-type]
-
-
 if __name__ == "__main__":
-    arguments = sys.argv[1:] or ["walk"]
-    main(arguments[0], arguments[1:])
+    try:
+        main(*sys.argv[1:])
+    except ParameterError as error:
+        sys.exit(f"fit_gains: {error}")

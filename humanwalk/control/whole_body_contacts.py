@@ -123,8 +123,7 @@ class SolesOnGround(NamedTuple):
         R_SW = self.R_SW[points]
         share = np.maximum(load[points], MIN_LOAD)
         edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
-        J_edges = edges_W @ J_points
-        J_edges = J_edges.reshape(-1, J.shape[-1])
+        J_edges = (edges_W @ J_points).reshape(-1, J.shape[-1])
         return Contacts(points, soles.side[points], self.p_W[points], load[points] / np.sqrt(share), edges_W, J_edges)
 
 
@@ -165,7 +164,14 @@ class Contacts(NamedTuple):
         return forces
 
     def across(self, p_WV: Array) -> Array:
-        """Parts of the edges across the lines from the points to a point V in W [m], by foot, (c x edges, feet x 3)."""
+        """Components of the edges across the lines from their points to a point V, in W, (c x edges, 3 per foot).
+
+        Those of an edge are in the columns of its foot, so that edge_forces @ across is the force of each foot across
+        its line.
+
+        Args:
+            p_WV: position of V [m].
+        """
         along = p_WV - self.p_W
         along /= np.linalg.norm(along, axis=1, keepdims=True)
         across = self.edges_W - (self.edges_W @ along[:, :, None]) * along[:, None, :]

@@ -189,10 +189,13 @@ class WholeBodyQp:
 
 def _pivot_cost(contacts: Contacts, body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Array:
     """Cost of forces that do not point to the pivot, while both feet are loaded, (edges, edges)."""
+    k = len(contacts.J_edges)
+    if np.unique(contacts.side).size < len(SIDES):
+        return np.zeros((k, k))
     pivot = body.com.position + np.array((0.0, 0.0, p.force_pivot.height))
     across = contacts.across(pivot) / p.force_pivot.unit
     first, second = (reference.foot(side).load for side in SIDES)
-    both = 4.0 * first * second / (first + second) ** 2 if np.unique(contacts.side).size == len(SIDES) else 0.0
+    both = 4.0 * first * second / (first + second) ** 2
     return both * across @ across.T
 
 

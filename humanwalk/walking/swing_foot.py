@@ -96,7 +96,7 @@ class SwingParameters:
 class SwingProfile:
     """Height of the ankle and pitch of the foot over the progress from 0 at toe-off to 1 at touchdown.
 
-    Their accelerations are continuous: a jump is one of the ankle's, knee's and hip's moment.
+    Their accelerations are continuous: a jump in them would be a jump in the moments of ankle, knee and hip.
     """
 
     pieces: tuple[tuple[Cubic, Cubic], ...]
