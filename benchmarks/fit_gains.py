@@ -101,6 +101,8 @@ GAINS: Mapping[str, Gain] = {
     PROGRAM + "pelvis.weight": Gain(0.6, 0.5, 10.0),
     PROGRAM + "chest.weight": Gain(2.0, 2.0, 30.0),
     PROGRAM + "knee_margin": Gain(0.012, 0.02, 0.12),
+    PROGRAM + "spine.weight": Gain(0.15, 0.1, 2.0),
+    PROGRAM + "stance.damping": Gain(6.0, 16.0, 80.0),
 }
 
 LIMITS: Mapping[str, tuple[float, float, float]] = {

@@ -45,9 +45,9 @@ class NoStyle:
 class NormativeStyle:
     """Angles and torques of people at the same dimensionless speed: curves that the walk is scored with."""
 
-    gains: TaskGains = critical(300.0, 5.0)
+    gains: TaskGains = critical(300.0, 0.3)
 
-    torque_unit: float = quantity(1.0, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(4.0, "N m", 0.1, 1e6)
     """Torque error of a joint that costs as much as an acceleration error of 1 m/s2 with the weight 1."""
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:

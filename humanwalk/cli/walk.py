@@ -18,7 +18,6 @@ from humanwalk.body.subject import Subject
 from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
-from humanwalk.parameter_file import plain
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
 from humanwalk.run.outcome import Outcome
@@ -26,10 +25,6 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
-from humanwalk.walking.base_of_support import BaseOfSupport
-
-STYLED = "normative"
-"""The shipped scenario with a style."""
 
 
 def walk_and_write(
@@ -157,8 +152,6 @@ def follow_overrides(recording: Path, mapping: Path | None, kinematic: bool) -> 
 def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) -> dict[str, str]:
     """Overrides of a scenario that walks a recording on its own feet: its angles as style, its speed and its steps.
 
-    The other parameters are those of the shipped scenario with a style, the pressure that of the defaults.
-
     Args:
         recording: File of joint angles with the path of the pelvis.
         mapping: File that assigns columns to joints; None: by name.
@@ -169,14 +162,10 @@ def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) 
     """
     style = RecordedStyle(**_files(recording, mapping))
     gait = style.gait(subject)
-    points = [{"time": 0.2, "forward": gait.speed}]
-    walker = plain(load_scenario(STYLED))["controller"]["balanced"]
-    # Parameters are those of the reference body.
-    walker["planner"]["timing"] |= {"step": gait.step / subject.scale.time, "walk_ratio": 0.0}
-    # A recording has no torques, with which the pressure of that scenario belongs.
-    walker["planner"]["support"] = plain(BaseOfSupport())
-    walker |= {
-        "command": {"points": points, "acceleration": 1.0},
+    walker = {
+        "command": {"points": [{"time": 0.2, "forward": gait.speed}], "acceleration": 1.0},
+        # Parameters are those of the reference body.
+        "planner": {"timing": {"step": gait.step / subject.scale.time, "walk_ratio": 0.0}},
         "style": {"recorded": _files(recording, mapping)},
     }
     return {

@@ -70,7 +70,7 @@ class WholeBodyParameters:
     com_height: TaskGains = critical(100.0, 230.0)
     """Height of the center of mass."""
 
-    stance: TaskGains = TaskGains(0.0, 50.0, 1000.0)
+    stance: TaskGains = TaskGains(0.0, 42.0, 1000.0)
     """Zero velocity of a foot in stance."""
 
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
@@ -97,8 +97,9 @@ class WholeBodyParameters:
     chest: TaskGains = critical(150.0, 13.0)
     """Rotation of the chest."""
 
-    spine: TaskGains = critical(100.0, 0.3)
-    """Posture of the spine."""
+    spine: TaskGains = critical(100.0, 0.6)
+    """Posture of the spine. With a smaller weight the trunk sways on the pelvis, and the moments of the hips vary more
+    (docs/likeness.md, "What a firm spine does")."""
 
     feet: TaskGains = critical(400.0, 30.0)
     """Posture of ankle rotation, midfoot and toes."""

@@ -9,7 +9,6 @@ import pytest
 
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario
-from humanwalk.walking.base_of_support import BaseOfSupport
 
 SPEED, STEP = 0.8, 0.6
 SLOW_TRIAL = Path(__file__).parents[2] / "tools" / "slow_trial.py"
@@ -38,9 +37,9 @@ def test_its_speed_and_steps_are_commanded_and_nothing_supports_it(
     assert controller.command.points[0].forward == pytest.approx(SPEED, abs=0.01)
     timing = controller.planner.timing
     assert timing.step == pytest.approx(STEP, abs=0.01)
-    styled: Any = load_scenario("normative").controller
-    assert controller.planner == replace(styled.planner, timing=timing, support=BaseOfSupport())
-    assert controller.whole_body == styled.whole_body
+    default: Any = load_scenario("walk").controller
+    assert controller.planner == replace(default.planner, timing=timing)
+    assert controller.whole_body == default.whole_body
     recording.unlink()
     assert humanwalk("reproduce", "walked")[0] == 0
 
