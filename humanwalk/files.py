@@ -5,8 +5,8 @@ import fcntl
 import os
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from humanwalk.quantity import ParameterError, printable
@@ -105,11 +105,35 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     Raises:
         ParameterError: the file cannot be written, with the system's reason.
     """
+    write_set({path: write})
+
+
+def write_set(files: Mapping[Path, Callable[[Path], object]]) -> None:
+    """Write files that belong together as `write_whole` does; they are put in place when all of them are filled.
+
+    Old and new files are never together with the last one: it is missing while the others are replaced. A program that
+    is killed then leaves a set without its last file.
+    """
+    *others, last = files
+    with ExitStack() as prepared:
+        filled = {path: prepared.enter_context(_filled(path, write)) for path, write in files.items()}
+        if others:
+            with file_errors(last, WRITABLE):
+                last.unlink(missing_ok=True)
+        for path, beside in filled.items():
+            with file_errors(path, WRITABLE):
+                beside.replace(path)
+
+
+@contextmanager
+def _filled(path: Path, write: Callable[[Path], object]) -> Iterator[Path]:
+    """A file beside `path` that `write` has filled; removed at the end unless it was moved."""
     with file_errors(path, WRITABLE):
         handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
         os.close(handle)
-        beside = Path(name)
-        try:
+    beside = Path(name)
+    try:
+        with file_errors(path, WRITABLE):
             write(beside)
             with beside.open("rb") as file:
                 os.fsync(file.fileno())
@@ -117,9 +141,9 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
             umask = os.umask(0)
             os.umask(umask)
             beside.chmod(0o666 & ~umask)
-            beside.replace(path)
-        finally:
-            beside.unlink(missing_ok=True)
+        yield beside
+    finally:
+        beside.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -3,6 +3,7 @@
 import errno
 import os
 import stat
+from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.files import make_folder, read_regular, read_text, require_inside, write_text, write_whole
+from humanwalk.files import make_folder, read_regular, read_text, require_inside, write_set, write_text, write_whole
 from humanwalk.quantity import ParameterError
 
 
@@ -47,6 +48,31 @@ def test_result_is_as_readable_as_any_other_file(tmp_path: Path) -> None:
     (tmp_path / "ordinary").write_text("x")
     modes = [stat.S_IMODE((tmp_path / name).stat().st_mode) for name in ("result", "ordinary")]
     assert modes[0] == modes[1]
+
+
+def test_a_set_is_never_old_and_new_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program that is killed at any replacement leaves one generation, or no last file."""
+    paths, seen = [tmp_path / "signals", tmp_path / "summary"], []
+    replace = Path.replace
+
+    def watched(beside: Path, path: Path) -> None:
+        seen.append([p.read_text() for p in paths if p.exists()])
+        replace(beside, path)
+
+    monkeypatch.setattr(Path, "replace", watched)
+    for text in (b"old", b"new"):
+        write_set(dict.fromkeys(paths, methodcaller("write_bytes", text)))
+    assert seen == [[], ["old"], ["old"], ["new"]]
+    assert [path.read_text() for path in paths] == ["new", "new"]
+
+
+def test_a_failing_writer_of_a_set_leaves_the_old_set(tmp_path: Path) -> None:
+    paths = [tmp_path / "signals", tmp_path / "summary"]
+    write_set({path: lambda beside: beside.write_text("old") for path in paths})
+    with pytest.raises(ZeroDivisionError):
+        write_set({paths[0]: lambda beside: beside.write_text("new"), paths[1]: lambda beside: 1 / 0})
+    assert [path.read_text() for path in paths] == ["old", "old"]
+    assert sorted(tmp_path.iterdir()) == paths
 
 
 @pytest.mark.parametrize("error", [RuntimeError("no"), KeyboardInterrupt(), ValueError("no")])

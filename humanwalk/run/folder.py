@@ -21,6 +21,7 @@ from humanwalk.files import (
     make_folder,
     read_regular,
     require_inside,
+    write_set,
     write_text,
     write_whole,
 )
@@ -227,15 +228,21 @@ def require_room(folder: Path, scenario: Scenario) -> None:
 def write_run(path: Path, scenario: Scenario, signals: pa.Table, summary: Summary) -> Run:
     """Write a simulation into its folder, each file whole or not at all.
 
-    The summary comes last: a folder that has one is a complete run. The files that the scenario reads are copied into
-    the folder, and the scenario in the folder reads the copies. The provenance is added to the summary.
+    A folder that has a summary is a complete run: a checkpoint replaces signals and summary together. The files that
+    the scenario reads are copied into the folder, and the scenario in the folder reads the copies. The provenance is
+    added to the summary.
     """
     origin = provenance(scenario, signals)
     metadata = {b"humanwalk": json.dumps({"scenario": summary["scenario"], **origin}).encode()}
     signals = signals.replace_schema_metadata(metadata)
     write_text(path / SCENARIO, dump_scenario(_keep_files(path, scenario)))
-    write_whole(path / SIGNALS, lambda beside: pq.write_table(signals, beside, compression="zstd"))
-    write_text(path / SUMMARY, json.dumps({**summary, "provenance": origin}, indent=2) + "\n")
+    text = json.dumps({**summary, "provenance": origin}, indent=2) + "\n"
+    write_set(
+        {
+            path / SIGNALS: lambda beside: pq.write_table(signals, beside, compression="zstd"),
+            path / SUMMARY: lambda beside: beside.write_text(text, encoding="utf-8"),
+        }
+    )
     return Run(path)
 
 
