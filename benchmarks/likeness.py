@@ -4,6 +4,7 @@ Runs the shipped study `likeness` into the folder (runs/likeness), or resumes it
 that of the kept results of the shipped balance studies.
 """
 
+import argparse
 import csv
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -243,4 +244,6 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path("runs") / STUDY)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path("runs") / STUDY)
+    main(parser.parse_args().folder)
