@@ -109,10 +109,16 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def write_set(files: Mapping[Path, Callable[[Path], object]]) -> None:
-    """Write files that belong together as `write_whole` does; they are put in place when all of them are filled.
+    """Write files that belong together, each as `write_whole` does; all are filled before the first is put in place.
 
-    Old and new files are never together with the last one: it is missing while the others are replaced. A program that
-    is killed then leaves a set without its last file.
+    The last file is missing while the others are replaced: a program that is killed never leaves it beside files of
+    another set.
+
+    Args:
+        files: what to call for each file.
+
+    Raises:
+        ParameterError: a file cannot be written, with the system's reason.
     """
     *others, last = files
     with ExitStack() as prepared:
