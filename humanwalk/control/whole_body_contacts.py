@@ -15,8 +15,9 @@ from humanwalk.control.body_dynamics import Dynamics
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array, Indices, Mask
 from humanwalk.numerics.rotation import cross_matrix
+from humanwalk.quantity import GRAVITY
 from humanwalk.terrain import Ground
-from humanwalk.walking.walking_reference import FootTask, WalkingReference
+from humanwalk.walking.walking_reference import FootReference, WalkingReference
 
 EDGES = 4
 """Number of edges of a friction pyramid."""
@@ -113,8 +114,10 @@ class SolesOnGround(NamedTuple):
         soles = self.soles
         feet = [reference.foot(side) for side in SIDES]
         load = np.array([foot.load for foot in feet])[soles.side]
-        load[soles.is_heel & np.array([foot.task is FootTask.HEEL_OFF for foot in feet])[soles.side]] = 0.0
-        (points,) = np.nonzero((self.height[: load.size] < p.contact_height) & (load > 0.0))
+        is_near = self.height[: load.size] < p.contact_height
+        least, largest = self._heel_limits(feet, is_near, GRAVITY * body.M[3, 3])
+        largest = np.minimum(p.max_contact_force * load, largest)
+        (points,) = np.nonzero(is_near & (largest > 0.0))
         under = soles.body[points]
         J = body.J[under]
         # The velocity of a point is v + w x r.
@@ -124,7 +127,22 @@ class SolesOnGround(NamedTuple):
         share = np.maximum(load[points], MIN_LOAD)
         edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
         J_edges = (edges_W @ J_points).reshape(-1, J.shape[-1])
-        return Contacts(points, soles.side[points], self.p_W[points], load[points] / np.sqrt(share), edges_W, J_edges)
+        limits = np.array((np.minimum(least, largest)[points], largest[points])) / (p.force_unit * np.sqrt(share))
+        return Contacts(points, soles.side[points], self.p_W[points], limits, edges_W, J_edges)
+
+    def _heel_limits(self, feet: Sequence[FootReference], is_near: Mask, weight: float) -> Array:
+        """Least and largest force along each edge of the contact points [N], (2, k); unlimited but under a heel.
+
+        Args:
+            feet: in the order of SIDES.
+            is_near: whether a contact point is near the ground, (k,).
+            weight: of the body [N].
+        """
+        limits = np.tile(((0.0,), (np.inf,)), is_near.size)
+        for i, foot in enumerate(feet):
+            heel = self.soles.is_heel & is_near & (self.soles.side == i)
+            limits[:, heel] = weight / (EDGES * max(heel.sum(), 1)) * np.array(foot.heel)[:, None]
+        return limits
 
 
 def friction_edges(mu: Array, unit: float) -> Array:
@@ -146,7 +164,7 @@ class Contacts(NamedTuple):
         points: indices of the points, (c,).
         side: index of the foot of each point in SIDES, (c,).
         p_W: the points in W [m], (c, 3).
-        max_share: largest force along each edge, per length of the edge and largest force at full load, (c,).
+        limits: least and largest force along each edge, per length of the edge, (2, c).
         edges_W: edges of each point's friction pyramid in W, (c, edges, 3).
         J_edges: Jacobian of the velocities along all edges, (c x edges, nv).
     """
@@ -154,7 +172,7 @@ class Contacts(NamedTuple):
     points: Indices
     side: Indices
     p_W: Array
-    max_share: Array
+    limits: Array
     edges_W: Array
     J_edges: Array
 

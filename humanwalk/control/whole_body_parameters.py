@@ -50,7 +50,7 @@ class ForcePivot:
     height: float = quantity(1.0, "m", 0.0, 2.0)
     """Height above the center of mass."""
 
-    unit: float = quantity(4.0, "N", 0.5, 1e6)
+    unit: float = quantity(3.0, "N", 0.5, 1e6)
     """Part of the force of a foot across its line that costs as much as an acceleration error of 1 m/s2 with the weight
     1; the cost fades as the foot behind is unloaded."""
 
@@ -59,7 +59,7 @@ class ForcePivot:
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(710.0, "", 0.0, 1e5)
+    com_weight: float = quantity(770.0, "", 0.0, 1e5)
     """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
 
@@ -67,7 +67,7 @@ class WholeBodyParameters:
     """Weight of the center of pressure at the planned zero-moment point, per squared acceleration of the center of mass
     that would move it there. With `com_weight` alone the angular momentum of the swinging leg moves the pressure."""
 
-    com_height: TaskGains = critical(100.0, 230.0)
+    com_height: TaskGains = critical(100.0, 275.0)
     """Height of the center of mass."""
 
     stance: TaskGains = TaskGains(0.0, 42.0, 1000.0)
@@ -76,13 +76,13 @@ class WholeBodyParameters:
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
     """Speed at which a stance foot that is still in the air moves toward the ground."""
 
-    heel_strike: TaskGains = critical(1400.0, 1000.0)
+    heel_strike: TaskGains = critical(1500.0, 1000.0)
     """Rotation of a foot after heel strike."""
 
     heel_off: TaskGains = critical(400.0, 27.0)
     """Pitch of a foot whose heel rises."""
 
-    swing_position: TaskGains = critical(300.0, 50.0)
+    swing_position: TaskGains = critical(335.0, 40.0)
     """Position of the swing ankle."""
 
     swing_rotation: TaskGains = critical(400.0, 20.0)
@@ -91,7 +91,7 @@ class WholeBodyParameters:
     swing_acceleration_limit: float = quantity(100.0, "m/s2", 10.0, 1000.0)
     """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
 
-    pelvis: TaskGains = critical(200.0, 2.5)
+    pelvis: TaskGains = critical(200.0, 2.0)
     """Rotation of the pelvis."""
 
     chest: TaskGains = critical(150.0, 13.0)
@@ -129,7 +129,7 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(4.4, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(4.1, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""

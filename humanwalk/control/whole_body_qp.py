@@ -177,9 +177,8 @@ class WholeBodyQp:
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
         toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]
         low, high = p.joint_limit_acceleration * JOINT_LIMIT_RANGE[:, :, None]
-        max_force = p.max_contact_force / p.force_unit * np.repeat(contacts.max_share, EDGES)
         bounds = (
-            (np.zeros(k), max_force),
+            np.repeat(contacts.limits, EDGES, axis=1),
             UNBOUNDED,
             np.clip(toward_limits, low, high),
             self._torque_range - load,

@@ -15,7 +15,7 @@ class CounterRotation:
     pelvis: float = quantity(0.09, "rad/m", 0.0, 1.0)
     """Yaw of the pelvis, with the leading leg."""
 
-    drop: float = quantity(0.045, "rad s/m", 0.0, 0.3)
+    drop: float = quantity(0.04, "rad s/m", 0.0, 0.3)
     """Largest drop of the pelvis toward the swinging leg per forward speed; people have 0.06 (Schwartz et al. 2008)."""
 
     drop_share: float = quantity(0.9, "", 0.1, 1.0)
@@ -27,7 +27,7 @@ class CounterRotation:
     head: float = quantity(0.15, "rad/m", 0.0, 1.0)
     """Yaw of the head relative to the chest, against it: with the value of the chest the head is steady in space."""
 
-    arms: float = quantity(0.6, "rad/m", 0.0, 2.0)
+    arms: float = quantity(0.7, "rad/m", 0.0, 2.0)
     """Flexion of the shoulder opposite to the leading leg."""
 
     def drop_at(self, progress: float, speed: float) -> float:

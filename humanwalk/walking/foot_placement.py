@@ -22,7 +22,7 @@ SPEEDUP_SHARE = 0.95
 class StepPlacement:
     """Limits of the footholds."""
 
-    step_width: float = quantity(0.16, "m", 0.08, 0.4)
+    step_width: float = quantity(0.155, "m", 0.08, 0.4)
     """Nominal sideways distance of the ankles."""
 
     min_width: float = quantity(0.09, "m", 0.0, 0.3)

@@ -1,5 +1,7 @@
 """References of the feet: the stance foot, the foot behind in double support, and the swinging foot."""
 
+import math
+
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import wrapped
 from humanwalk.terrain.face import surface_axes
@@ -53,11 +55,14 @@ def heel_off_lead(start: Foothold, goal: Foothold, speed: float, parameters: Ste
 
 def stance_rollover(
     state: PlannerState, swing: Swing, command: Command, parameters: StepPlannerParameters
-) -> Rollover | None:
-    """Rollover of the stance foot after heel-off; None while its heel is on the ground."""
+) -> tuple[Rollover, float]:
+    """Rollover of the stance foot in single support, and the time since its heel-off [s].
+
+    The time is negative before heel-off; minus infinity for a heel that does not rise.
+    """
     found = rollover(state, state.stance_foot, swing.foothold, command, parameters)
-    has_begun = state.elapsed > state.timing.step - found.lead
-    return found if has_begun and parameters.rockers.heel_rises(found.speed) else None
+    since = state.elapsed - (state.timing.step - found.lead)
+    return found, since if parameters.rockers.heel_rises(found.speed) else -math.inf
 
 
 def stance_foot(
@@ -67,11 +72,13 @@ def stance_foot(
     timing, rockers = state.timing, parameters.rockers
     R_WS = state.stance_foot.R_WS
     if state.steps > 0 and state.elapsed < rockers.heel:
-        return rockers.over_heel(state.heading, R_WS)
-    found = stance_rollover(state, swing, command, parameters) if swing is not None else None
-    if found is None:
+        level = parameters.swing.rolling_share(state.old_foot.step_to(state.stance_foot))
+        return rockers.over_heel(level, state.heading, R_WS)
+    if swing is None:
         return FootReference(FootTask.FLAT, 1.0, state.heading, R_WS)
-    since = state.elapsed - (timing.step - found.lead)
+    found, since = stance_rollover(state, swing, command, parameters)
+    if since <= 0.0:
+        return rockers.before_heel_off(-since, state.heading, R_WS, found)
     return rockers.over_ball(since, timing.double_support, 1.0, state.heading, R_WS, found)
 
 

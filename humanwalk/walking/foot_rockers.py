@@ -33,14 +33,23 @@ class FootRockers:
     heel: float = quantity(0.13, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
-    ball: float = quantity(0.24, "s", 0.0, 0.3)
+    landing_load: float = quantity(0.16, "", 0.0, 1.0)
+    """Least vertical force under the heel from touchdown until the foot is flat, over the body weight. Without it the
+    heel, which takes over load as slowly as the pressure moves, leaves the ground again after its impact."""
+
+    ball: float = quantity(0.232, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
     a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    pitch: float = quantity(1.29, "rad", 0.0, 1.7)
+    unloading: float = quantity(8.0, "1/s", 0.5, 1e4)
+    """Rate at which the largest vertical force under the heel falls to zero until heel-off, over the body weight. A heel
+    that loses its load at once leaves it to the toes until the ball is compressed (docs/likeness.md, "A heel that lands
+    and leaves with its load")."""
+
+    pitch: float = quantity(1.27, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 
     full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
@@ -72,9 +81,24 @@ class FootRockers:
         """Share of `ball` and `pitch` at a forward speed [m/s]."""
         return math.pow(clip(speed / self.full_pitch_speed, 0.0, 1.0), self.speed_exponent)
 
-    def over_heel(self, yaw: float, R_WS: Array) -> FootReference:
-        """Reference of a foot that has just landed on ground with the axes R_WS."""
-        return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS)
+    def over_heel(self, level: float, yaw: float, R_WS: Array) -> FootReference:
+        """Reference of a foot that has just landed.
+
+        Args:
+            level: How much of a level step the step is, 0 to 1; in one up or down the foot does not land on its heel.
+            yaw: Yaw of the foot [rad].
+            R_WS: Axes of the ground under the foot.
+        """
+        return FootReference(FootTask.HEEL_STRIKE, 1.0, yaw, R_WS, heel=(level * self.landing_load, math.inf))
+
+    def before_heel_off(self, remaining: float, yaw: float, R_WS: Array, rollover: Rollover) -> FootReference:
+        """Reference of a flat foot whose heel rises after a time [s].
+
+        In a step up or down the heel keeps its load: the pressure has to stay where the foot is flat.
+        """
+        level = 1.0 - rollover.climbing
+        largest = self.unloading * remaining / level if level > 0.0 else math.inf
+        return FootReference(FootTask.FLAT, 1.0, yaw, R_WS, heel=(0.0, largest))
 
     def over_ball(
         self, since: float, double_support: float, load: float, yaw: float, R_WS: Array, rollover: Rollover
@@ -97,4 +121,4 @@ class FootRockers:
         pitch = ScalarMotion(value, rate, acceleration)
         largest = (1.0 - rollover.climbing) * self.toes + rollover.climbing * max(self.toes, final)
         toes = pitch[:2] if value <= largest else (largest, 0.0)
-        return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes)
+        return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes, heel=(0.0, 0.0))

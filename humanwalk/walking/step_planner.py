@@ -151,7 +151,7 @@ class StepPlanner:
 
         # Pivot: feedback of the error of the DCM, with the zero-moment point within the base of support.
         gain = p.double_support_gain if state.phase is Phase.DOUBLE_SUPPORT else p.dcm_gain
-        heel_is_up = state.swing is not None and stance_rollover(state, state.swing, command, p) is not None
+        heel_is_up = state.swing is not None and stance_rollover(state, state.swing, command, p)[1] > 0.0
         pivot, lead = segments[0].start + (1.0 + gain) * (dcm - dcm_reference), pivot_lead(state, gait)
         zmp = self._clamp(state, pivot - lead, heel_is_up)
         pivot = zmp + lead

@@ -16,13 +16,13 @@ class StepTiming:
     step: float = quantity(0.53, "s", 0.3, 1.2)
     """From touchdown to touchdown of the other foot in a careful step, and in all steps without a walk ratio."""
 
-    walk_ratio: float = quantity(0.355, "m s", 0.0, 1.0)
+    walk_ratio: float = quantity(0.358, "m s", 0.0, 1.0)
     """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
 
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)
     """Longest duration for a walk ratio: slow walks have shorter steps instead."""
 
-    double_support: float = quantity(0.094, "s", 0.04, 0.4)
+    double_support: float = quantity(0.093, "s", 0.04, 0.4)
     """First part of the step."""
 
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)

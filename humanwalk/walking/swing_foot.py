@@ -12,39 +12,39 @@ from humanwalk.quantity import quantity
 from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
-LATE_PITCH = 0.87
-"""Pitch at three quarters of the swing, from 0 at toe-off to 1 at touchdown; as in people."""
-
 MAX_TOE_UP = 0.442
-"""Largest pitch at touchdown [rad]: that of 1.7 m/s."""
+"""Largest pitch at touchdown [rad]: that of 1.6 m/s."""
 
 
 @dataclass(frozen=True)
 class SwingParameters:
     """Shape of the swing."""
 
-    lift: float = quantity(0.031, "m", 0.0, 0.3)
+    lift: float = quantity(0.029, "m", 0.0, 0.3)
     """Rise of the ankle above its height at toe-off in an ordinary step."""
 
-    mid_height: float = quantity(0.51, "", 0.2, 1.0)
+    mid_height: float = quantity(0.48, "", 0.2, 1.0)
     """Height of the ankle at half of the swing, relative to its apex at a quarter. In people, whose ankle rises at
     heel-off, it is 0.5 (docs/likeness.md)."""
 
-    late_height: float = quantity(0.18, "", 0.0, 1.0)
+    late_height: float = quantity(0.173, "", 0.0, 1.0)
     """The same at three quarters of the swing; in people 0.2."""
 
-    early_pitch: float = quantity(-0.023, "", -0.5, 0.5)
+    early_pitch: float = quantity(-0.004, "", -0.5, 0.5)
     """Pitch at a quarter of the swing, from 0 at toe-off to 1 at touchdown. The toes point down while the knee flexes;
     in people it is -0.14 at a slow and 0.04 at a free speed."""
 
-    mid_pitch: float = quantity(0.445, "", 0.0, 1.0)
+    mid_pitch: float = quantity(0.437, "", 0.0, 1.0)
     """The same at half of the swing; in people 0.39 at a slow and 0.46 at a free speed."""
+
+    late_pitch: float = quantity(0.84, "", 0.0, 1.5)
+    """The same at three quarters of the swing; in people 0.87."""
 
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
     """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
 
-    toe_up: float = quantity(0.262, "rad s/m", 0.0, 0.6)
-    """Pitch at touchdown per forward speed, toes up: 21 degrees at 1.4 m/s."""
+    toe_up: float = quantity(0.28, "rad s/m", 0.0, 0.6)
+    """Pitch at touchdown per forward speed, toes up: 22 degrees at 1.4 m/s."""
 
     heel_height: float = quantity(0.0, "", 0.0, 1.0)
     """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the
@@ -53,13 +53,13 @@ class SwingParameters:
     landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    push_off: float = quantity(7.86, "1/m", 0.0, 30.0)
+    push_off: float = quantity(8.15, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
-    landing_speed_ratio: float = quantity(0.59, "", 0.0, 1.0)
+    landing_speed_ratio: float = quantity(0.63, "", 0.0, 1.0)
     """Horizontal speed at touchdown, relative to the speed of the walk."""
 
-    landing_deceleration: float = quantity(19.5, "1/s", 0.0, 50.0)
+    landing_deceleration: float = quantity(21.0, "1/s", 0.0, 50.0)
     """Horizontal deceleration at touchdown, per speed of the walk."""
 
     landing_depth: float = quantity(0.003, "m", 0.0, 0.05)
@@ -125,7 +125,7 @@ class SwingProfile:
         apex = max(foot.height + parameters.lift, flat_height + parameters.clearance)
         inner = flat_height + np.array((1.0, parameters.mid_height, parameters.late_height)) * (apex - flat_height)
         heights = np.array((foot.height, *inner, landing))
-        shape = np.array((0.0, parameters.early_pitch, parameters.mid_pitch, LATE_PITCH, 1.0))
+        shape = np.array((0.0, parameters.early_pitch, parameters.mid_pitch, parameters.late_pitch, 1.0))
         pitches = foot.pitch + shape * (-toe_up - foot.pitch)
         points = np.column_stack((heights, pitches))
         quarter = duration / (len(points) - 1)

@@ -152,6 +152,7 @@ class FootReference:
         height: Ankle in W [m] (SWING only).
         pitch: Pitch of the foot relative to R_WS [rad] (SWING and HEEL_OFF only).
         toes: Extension of the toes and its rate [rad, rad/s].
+        heel: Least and largest vertical force under the heel [body weights].
     """
 
     task: FootTask
@@ -162,6 +163,7 @@ class FootReference:
     height: ScalarMotion = ScalarMotion()
     pitch: ScalarMotion = ScalarMotion()
     toes: tuple[float, float] = (0.0, 0.0)
+    heel: tuple[float, float] = (0.0, math.inf)
 
 
 @dataclass(frozen=True)

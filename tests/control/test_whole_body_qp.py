@@ -1,5 +1,6 @@
 """The whole-body program: Newton's laws, limits of friction and torque, terrain, and QP failures."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -412,6 +413,21 @@ def test_a_force_costs_its_square_over_the_load_of_its_foot(
     largest = program.upper[: length.size] * length.ravel()
     assert largest[:24] == pytest.approx(PARAMETERS.max_contact_force)
     assert largest[24:] == pytest.approx(load * PARAMETERS.max_contact_force)
+
+
+@pytest.mark.parametrize("least, largest", [(0.42, math.inf), (0.0, 0.2), (0.0, 0.0)])
+def test_the_force_under_a_heel_is_within_its_limits(
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton, least: float, largest: float
+) -> None:
+    """In standing with the pressure below the ankle each heel carries 0.37 body weights."""
+    body, heel = body_at(dynamics), [s.body == LEGS["Right"].hindfoot for s in contact_spheres(skeleton)]
+    free, limited = (replace(reference_for(body).right, heel=limits) for limits in ((0.0, math.inf), (least, largest)))
+    before, after = (
+        qp.solve(body, reference_for(body, right=foot), rest(qp)).forces[heel, 2].sum() / WEIGHT
+        for foot in (free, limited)
+    )
+    assert not least <= before <= largest
+    assert least - 1e-3 <= after <= largest + 1e-3
 
 
 def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:

@@ -1,5 +1,7 @@
 """References of the feet: heel strike, flat, heel-off and swing in their order, without jumps."""
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -55,6 +57,22 @@ def test_the_heel_rises_later_the_slower_the_walk(speed: float) -> None:
     for before, task in ((1.01 * lead, FootTask.FLAT), (0.99 * lead, FootTask.HEEL_OFF)):
         state, swing = state_at(TIMING.step - before), swing_to(NEXT)
         assert stance_foot(state, swing, Command(speed), PARAMETERS).task is task
+
+
+@given(st.floats(0.0, 1.0))
+def test_the_heel_is_unloaded_until_it_rises(share: float) -> None:
+    heel_off = TIMING.step - ROCKERS.lead(WALK.forward)
+    remaining = share * (heel_off - ROCKERS.heel)
+    least, largest = stance_foot(state_at(heel_off - remaining), swing_to(NEXT), WALK, PARAMETERS).heel
+    assert least == 0.0
+    assert largest == pytest.approx(ROCKERS.unloading * remaining, abs=1e-6)
+
+
+@given(st.floats(0.0, 1.0))
+def test_a_heel_that_does_not_rise_is_not_unloaded(share: float) -> None:
+    state = state_at(ROCKERS.heel + share * (TIMING.step - ROCKERS.heel))
+    assert stance_foot(state, swing_to(NEXT), Command(0.0), PARAMETERS).heel == (0.0, math.inf)
+    assert stance_foot(state, None, WALK, PARAMETERS).heel == (0.0, math.inf)
 
 
 @given(st.floats(-0.3, 0.3))

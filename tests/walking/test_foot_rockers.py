@@ -79,5 +79,17 @@ def test_toes_stay_on_the_ground_in_a_step_up_or_down(since: float, most: float,
 
 
 def test_a_foot_is_loaded_from_touchdown_on() -> None:
-    landed = ROCKERS.over_heel(0.3, np.eye(3))
+    landed = ROCKERS.over_heel(1.0, 0.3, np.eye(3))
     assert (landed.task, landed.load, landed.yaw) == (FootTask.HEEL_STRIKE, 1.0, 0.3)
+    assert landed.heel[0] == ROCKERS.landing_load > 0.0
+
+
+@given(st.floats(0.01, 1.0))
+def test_the_heel_lands_and_leaves_with_its_load_in_level_steps_only(level: float) -> None:
+    assert ROCKERS.over_heel(level, 0.0, np.eye(3)).heel[0] == level * ROCKERS.landing_load
+    before = ROCKERS.before_heel_off(0.05, 0.0, np.eye(3), Rollover(1.0, 0.1, 1.0 - level))
+    assert before.heel[1] * level == pytest.approx(0.05 * ROCKERS.unloading)
+
+
+def test_the_heel_carries_nothing_after_heel_off() -> None:
+    assert over_ball(0.5).heel == (0.0, 0.0)
