@@ -1,7 +1,8 @@
-"""Fits gains of the balanced walk to people's curves: python benchmarks/fit_gains.py [SCENARIO [GAIN ...]]
+"""Fits gains of the balanced walk to the goals of likeness: python benchmarks/fit_gains.py [SCENARIO [GAIN ...]]
 
-Least squares over the nine curves of the score, at three speeds on both contact models, and over limits of single
-measures. An iteration changes every gain once: some ten minutes on two cores. Prints the gains after every iteration.
+Measures how every gain changes the values of the goals and the nine curves of the score, at three speeds on both
+contact models. Searches the gains with which the most goals would be reached if these changes added up, and walks with
+them. A round takes some half a minute per gain on two cores. Prints the gains whenever more goals are reached.
 
 SCENARIO is `walk`, `normative` or a file; default: `walk`. A GAIN is a part of a name, such as `swing`; without any,
 all of GAINS are fitted.
@@ -9,44 +10,43 @@ all of GAINS are fitted.
 
 import sys
 from collections.abc import Mapping, Sequence
-from functools import partial
 from itertools import batched, product
 from typing import NamedTuple
 
 import numpy as np
-from dask.distributed import Client
-from scipy.optimize import OptimizeResult, least_squares
+from dask.distributed import Client, Future
+from likeness import CONTACT, FORWARD, GAIT, GOALS, STYLED, Goal, Row
+from scipy.optimize import minimize
+from scipy.special import expit
 
 from humanwalk.cli.common import counted_progress
-from humanwalk.gait.normative import CYCLE
-from humanwalk.measures.curves import CURVES
+from humanwalk.measures.curves import CURVES, JOINTS
 from humanwalk.measures.human_likeness import SCORED
-from humanwalk.measures.walk_measures import MEASURES, Walk
+from humanwalk.measures.walk_measures import Walk
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, numbers_of
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
 from humanwalk.study.cluster import local_client
+from humanwalk.study.row import measured
 
 CASES = tuple(product(("point", "hydroelastic"), (0.9, 1.2, 1.4)))
 """Contact model and speed [m/s] of the walks."""
 
-SPEED = "controller.balanced.command.points.0.forward"
+DURATION = "15"
+"""Of a walk [s]: the goals depend on its worst strides."""
 
-DURATION = "11.5"
-"""Of a walk [s]: some four strides of each leg after the walk is steady."""
+LARGEST_CHANGES = (1.0, 0.5, 0.25)
+"""Largest changes of the gains in a round, in steps: the next one is tried if the one before reaches no more goals."""
 
-EVERY = 2
-"""Points of the gait cycle per point that counts."""
+STEEPNESS = 2.0
+"""Of the loss of a goal around its limit, per UNITS."""
 
-FALLEN = 10.0
-"""Error of every point of a walk that fell, or that cannot be compared."""
+CHANGE_COST, SQUARE_COST, SCORE_GAIN = 0.15, 0.1, 0.4
+"""Cost of a change of a gain by one step, and of its square, and gain of a percent of the score, in goals."""
 
-MAX_TRIALS = 20
-"""Largest number of sets of gains that are tried, besides those that are changed one by one."""
-
-LIMIT_WEIGHT = 3.0
-"""Weight of the error of a measure against that of a point of a curve."""
+EDGE = 0.125
+"""Width of the smooth edge of the range within one standard deviation, in standard deviations."""
 
 
 class Gain(NamedTuple):
@@ -81,17 +81,21 @@ GAINS: Mapping[str, Gain] = {
     PLANNER + "swing.late_height": Gain(0.03, 0.1, 0.45),
     PLANNER + "swing.early_pitch": Gain(0.035, -0.2, 0.1),
     PLANNER + "swing.mid_pitch": Gain(0.03, 0.3, 0.6),
+    PLANNER + "swing.late_pitch": Gain(0.03, 0.7, 1.0),
     PLANNER + "swing.toe_up": Gain(0.025, 0.18, 0.35),
     PLANNER + "swing.push_off": Gain(0.6, 4.0, 12.0),
     PLANNER + "swing.landing_speed_ratio": Gain(0.05, 0.3, 0.9),
     PLANNER + "swing.landing_deceleration": Gain(2.0, 10.0, 35.0),
     PLANNER + "swing.landing_sink_rate": Gain(0.06, 0.0, 0.4),
+    PLANNER + "rockers.unloading": Gain(3.0, 4.0, 20.0),
     PLANNER + "height.walking": Gain(0.0025, 0.99, 1.03),
     PLANNER + "height.amplitude": Gain(0.0012, 0.0, 0.014),
     PLANNER + "height.delay": Gain(0.008, -0.04, 0.08),
     PLANNER + "rotation.pelvis": Gain(0.03, 0.03, 0.3),
     PLANNER + "rotation.drop": Gain(0.012, 0.0, 0.1),
+    PLANNER + "rotation.arms": Gain(0.2, 0.0, 1.2),
     PROGRAM + "com_weight": Gain(100.0, 150.0, 1500.0),
+    PROGRAM + "com_height.weight": Gain(70.0, 100.0, 600.0),
     PROGRAM + "torque_unit": Gain(1.0, 2.0, 20.0),
     PROGRAM + "force_pivot.height": Gain(0.15, 0.1, 1.2),
     PROGRAM + "force_pivot.unit": Gain(1.2, 2.0, 20.0),
@@ -105,44 +109,68 @@ GAINS: Mapping[str, Gain] = {
     PROGRAM + "stance.damping": Gain(6.0, 16.0, 80.0),
 }
 
-LIMITS: Mapping[str, tuple[float, float, float]] = {
-    "vertical GRF, first peak": (1.07, 1.23, 0.05),
-    "vertical GRF, dip": (0.72, 0.88, 0.05),
-    "vertical GRF, second peak": (1.07, 1.23, 0.05),
-    "contact lost after heel strike": (0.0, 0.0, 0.015),
-    "CoP backward": (0.0, 0.008, 0.01),
-    "cost of transport": (0.0, 0.4, 0.03),
+UNITS: Mapping[str, float] = {
+    "angles within 1 SD, mean [%]": 5.0,
+    "angles within 1 SD: hip, knee, ankle [%]": 5.0,
+    "angles, correlation": 0.02,
+    "moments within 1 SD, mean [%]": 4.0,
+    "moments, correlation": 0.03,
+    "moments, peak / human": 0.12,
+    "powers within 1 SD, mean [%]": 4.0,
+    "vertical GRF, peaks [BW]": 0.025,
+    "vertical GRF, dip [BW]": 0.025,
+    "share of stance": 0.008,
+    "share of double support": 0.012,
+    "cadence [1/min]": 2.0,
+    "step length [m]": 0.007,
+    "step width [m]": 0.01,
+    "cost of transport": 0.03,
 }
-"""Range of a measure, and the distance from it that counts as one standard deviation, in the unit of the measure."""
+"""Distance from the limit of a goal that counts as one. Goals that depend on one sample of the worst stride are not
+here: they do not change in proportion to the gains."""
+
+PREDICTED = {"angles": "", "moments": " moment", "powers": " power"}
+"""Curves whose shares within one standard deviation follow from the changes of the curves."""
 
 
-def errors(scenario: Scenario) -> Array:
-    """Of one walk: mean strides less people's in standard deviations, then the weighted errors of LIMITS."""
-    size = len(SCORED) * len(CYCLE[::EVERY]) + len(LIMITS)
+Walked = tuple[Row, Mapping[str, Array]]
+"""A walk: its row of the study, and its mean strides less people's in standard deviations, by curve."""
+
+
+def walk(scenario: Scenario, contact: str, speed: float, gait: str) -> Walked | None:
+    """A walk on a contact model at a speed [m/s]; None for one that fell or cannot be compared."""
     try:
         outcome = simulate(scenario)
+        row = measured(outcome) | {CONTACT: contact, FORWARD: speed, GAIT: gait}
     except ParameterError:
-        return np.full(size, FALLEN)
-    if not outcome.survived:
-        return np.full(size, FALLEN)
-    walk = Walk.of(outcome.signals, scenario)
-    if not all(foot.strides for foot in walk.feet.values()):
-        return np.full(size, FALLEN)
-    bands = [CURVES[curve].people(walk.pace.group, walk.pace.leg) for curve in SCORED]
-    strides = [walk.strides(curve).mean(axis=0) for curve in SCORED]
-    curves = [((mean - band.mean) / band.sd)[::EVERY] for mean, band in zip(strides, bands, strict=True)]
-    measured = [(kind.of_walk(walk).value, *LIMITS[kind.name]) for kind in MEASURES if kind.name in LIMITS]
-    limits = [(value - min(max(value, low), high)) / unit for value, low, high, unit in measured]
-    return np.concatenate((*curves, LIMIT_WEIGHT * np.array(limits)))
+        return None
+    if row.get("likeness.score") is None:
+        return None
+    steady = Walk.of(outcome.signals, scenario)
+    bands = {curve: CURVES[curve].people(steady.pace.group, steady.pace.leg) for curve in SCORED}
+    means = {curve: steady.strides(curve).mean(axis=0) for curve in SCORED}
+    return row, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
 
 
-def saturating(squares: Array) -> Array:
-    """Geman and McClure's loss z / (1 + z) of squared errors z, and its first two derivatives, (3, errors)."""
-    return np.array((squares / (1.0 + squares), (1.0 + squares) ** -2, -2.0 * (1.0 + squares) ** -3))
+def share_within(curve: Array) -> float:
+    """Share of a curve within one standard deviation [%], with a smooth edge."""
+    return 100.0 * float(expit((1.0 - np.abs(curve)) / EDGE).mean())
+
+
+def miss(goal: Goal, values: Array, row: Row) -> float:
+    """Distance of the worst value from the limits of a goal, negative within them, in UNITS."""
+    limits = goal.target(row).limits(row)
+    worst = max(max(low - value, value - high) for value, (low, high) in zip(values, limits, strict=True))
+    return float(worst) / UNITS[goal.name]
+
+
+def count(walks: Sequence[Walked]) -> int:
+    """Number of goals that are reached."""
+    return sum(goal.reached(row) is True for row, _ in walks for goal in GOALS)
 
 
 class Fit:
-    """Errors of the walks as a function of the gains, in steps from their values in a scenario."""
+    """Walks as a function of the gains, in steps from their values in a scenario."""
 
     def __init__(self, scenario: str, parts: Sequence[str], client: Client) -> None:
         """Prepare the fit.
@@ -156,6 +184,7 @@ class Fit:
             ParameterError: the scenario cannot be used, or no gain has such a name.
         """
         self.scenario, self.client = scenario, client
+        self._gait = STYLED if scenario == STYLED else "default"
         self.names = [name for name in GAINS if not parts or any(part in name for part in parts)]
         if not self.names:
             raise ParameterError(
@@ -173,49 +202,130 @@ class Fit:
         values = np.clip(self._start + steps * self._step, self._low, self._high)
         return dict(zip(self.names, values.tolist(), strict=True))
 
-    def errors(self, *points: Array) -> list[Array]:
-        """Errors of all cases, one array per point."""
-        jobs = [self.client.submit(errors, walk, pure=False) for point in points for walk in self.walks(point)]
+    def walks(self, *points: Array) -> list[list[Walked] | None]:
+        """The walks of all cases at every point; None for a point at which one fell."""
+        jobs = [self._submit(point, contact, speed) for point in points for contact, speed in CASES]
         with counted_progress("walks", estimate_period=600.0) as progress:
             found = list(progress.track((job.result() for job in jobs), total=len(jobs), description=self.scenario))
-        return [np.concatenate(cases) for cases in batched(found, len(CASES))]
+        return [None if None in cases else list(cases) for cases in batched(found, len(CASES))]
 
-    def walks(self, point: Array) -> list[Scenario]:
-        """The walks of all cases."""
-        common = {name: repr(value) for name, value in self.gains(point).items()} | {"duration": DURATION}
-        return [load_scenario(self.scenario, {**common, "contact": on, SPEED: str(v)}) for on, v in CASES]
+    def signs(self, point: Array) -> Array:
+        """Directions in which a step of each gain stays within its range."""
+        return np.where(self._start + (point + 1.0) * self._step <= self._high, 1.0, -1.0)
 
-    def at(self, point: Array) -> Array:
-        """Errors at one point."""
-        return self.errors(point)[0]
-
-    def slopes(self, point: Array) -> Array:
-        """Changes of the errors by one step of every gain, (errors, gains)."""
-        here, *beside = self.errors(point, *(point + np.eye(len(point))))
-        return np.array(beside).T - here[:, None]
+    def _submit(self, point: Array, contact: str, speed: float) -> Future[Walked | None]:
+        gains = {name: repr(value) for name, value in self.gains(point).items()}
+        walks = load_scenario(self.scenario, {**gains, "duration": DURATION, "contact": contact, FORWARD: str(speed)})
+        return self.client.submit(walk, walks, contact, speed, self._gait, pure=False)
 
 
-def show(fit: Fit, intermediate_result: OptimizeResult) -> None:
-    """Print the gains and the loss of an iteration."""
-    for name, value in fit.gains(intermediate_result.x).items():
-        print(f"{name}: {value:.4g}")
-    print(f"loss {intermediate_result.cost:.1f}\n", flush=True)
+class Case(NamedTuple):
+    """The walk of a case, and how a step of each gain changes it.
+
+    Attributes:
+        row: of the study.
+        values: of the goals of UNITS, and their slopes, (gains, values), by goal.
+        curves: as in `Walked`, (101,), and their slopes, (gains, 101), by curve.
+    """
+
+    row: Row
+    values: Mapping[str, tuple[Array, Array]]
+    curves: Mapping[str, tuple[Array, Array]]
+
+    @staticmethod
+    def of(here: Walked, beside: Sequence[Walked], signs: Array) -> "Case":
+        """The case of a walk.
+
+        Args:
+            here: the walk.
+            beside: the walks with one gain each changed.
+            signs: of these changes, (gains,).
+        """
+        (row, curves), values = here, _values(here[0])
+        changed = [_values(other) for other, _ in beside]
+        return Case(
+            row,
+            {goal: (value, _slopes([each[goal] for each in changed], value, signs)) for goal, value in values.items()},
+            {
+                name: (curve, _slopes([each[name] for _, each in beside], curve, signs))
+                for name, curve in curves.items()
+            },
+        )
+
+    def loss(self, steps: Array) -> tuple[float, float]:
+        """Number of goals that are missed, with smooth limits, and change of the score [%]."""
+        more = {
+            name: share_within(curve + steps @ slopes) - share_within(curve)
+            for name, (curve, slopes) in self.curves.items()
+        }
+        missed = 0.0
+        for goal in GOALS:
+            if goal.name in UNITS and goal.reached(self.row) is not None:
+                value, slopes = self.values[goal.name]
+                change = _change_of_shares(goal.name, more)
+                value = value + (steps @ slopes if change is None else change)
+                missed += float(expit(STEEPNESS * miss(goal, value, self.row)))
+        return missed, float(np.mean(list(more.values())))
+
+
+def best_steps(cases: Sequence[Case], gains: int, largest: float) -> Array:
+    """Steps of the gains, up to a largest change, that are best for goals and score if changes add up, (gains,)."""
+
+    def loss(steps: Array) -> float:
+        missed, score = np.array([case.loss(steps) for case in cases]).T
+        cost = CHANGE_COST * (np.sqrt(steps**2 + 0.01) - 0.1) + SQUARE_COST * steps**2
+        return float(missed.sum() - SCORE_GAIN * score.mean() + cost.sum())
+
+    found: Array = minimize(loss, np.zeros(gains), method="L-BFGS-B", bounds=[(-largest, largest)] * gains).x
+    return found
+
+
+def _values(row: Row) -> dict[str, Array]:
+    """Values of the goals of UNITS."""
+    return {goal.name: np.array(goal.values(row)) for goal in GOALS if goal.name in UNITS}
+
+
+def _slopes(changed: Sequence[Array], here: Array, signs: Array) -> Array:
+    """Changes of an array by a step of each gain, (gains, size)."""
+    return signs[:, None] * (np.array(changed) - here)
+
+
+def _change_of_shares(goal: str, more: Mapping[str, float]) -> Array | None:
+    """Change of the values of a goal of shares within one standard deviation; None for another goal."""
+    for quantity, curve in PREDICTED.items():
+        changes = np.array([more[f"{joint}{curve}"] for joint in JOINTS])
+        if goal == f"{quantity} within 1 SD, mean [%]":
+            return changes.mean(keepdims=True)
+        if goal == f"{quantity} within 1 SD: hip, knee, ankle [%]":
+            return changes
+    return None
 
 
 def main(scenario: str = "walk", *parts: str) -> None:
     """Fit the gains whose names contain one of the parts, and print them."""
     with local_client() as client:
         fit = Fit(scenario, parts, client)
-        least_squares(
-            fit.at,
-            np.zeros(len(fit.names)),
-            jac=fit.slopes,
-            loss=saturating,
-            f_scale=2.0,
-            x_scale=3.0,
-            max_nfev=MAX_TRIALS,
-            callback=partial(show, fit),
-        )
+        point = np.zeros(len(fit.names))
+        (here,) = fit.walks(point)
+        if here is None:
+            raise ParameterError(f"SCENARIO: a walk of {scenario} falls; allowed: those that walk; change its gains")
+        print(f"{count(here)} goals\n", flush=True)
+        is_better = True
+        while is_better:
+            signs = fit.signs(point)
+            # A gain whose change makes a walk fall is left alone.
+            beside = [here if walks is None else walks for walks in fit.walks(*(point + np.diag(signs)))]
+            cases = [Case.of(*walks, signs) for walks in zip(here, zip(*beside, strict=True), strict=True)]
+            is_better = False
+            for largest in LARGEST_CHANGES:
+                trial = point + best_steps(cases, point.size, largest)
+                (there,) = fit.walks(trial)
+                if there is not None and count(there) > count(here):
+                    point, here, is_better = trial, there, True
+                    for name, value in fit.gains(point).items():
+                        print(f"{name}: {value:.4g}")
+                    print(f"{count(here)} goals\n", flush=True)
+                    break
 
 
 if __name__ == "__main__":
