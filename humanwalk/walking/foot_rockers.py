@@ -45,9 +45,9 @@ class FootRockers:
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
     unloading: float = quantity(8.0, "1/s", 0.5, 1e4)
-    """Rate at which the largest vertical force under the heel falls to zero until heel-off, over the body weight. A heel
-    that loses its load at once leaves it to the toes until the ball is compressed (docs/likeness.md, "A heel that lands
-    and leaves with its load")."""
+    """Rate at which the largest vertical force under the heel falls to zero until heel-off, over the body weight. A
+    heel that loses its load at once leaves it to the toes until the ball is compressed (docs/likeness.md, "A heel that
+    lands and leaves with its load")."""
 
     pitch: float = quantity(1.27, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
