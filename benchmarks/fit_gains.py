@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from dask.distributed import Client, Future
-from likeness import CONTACT, FORWARD, GAIT, GOALS, STYLED, Goal, Row
+from likeness import CONTACT, FORWARD, GAIT, GOALS, Goal, Row
 from scipy.optimize import minimize
 from scipy.special import expit
 
@@ -40,10 +40,10 @@ LARGEST_CHANGES = (1.0, 0.5, 0.25)
 """Largest changes of the gains in a round, in steps: the next one is tried if the one before reaches no more goals."""
 
 STEEPNESS = 2.0
-"""Of the loss of a goal around its limit, per UNITS."""
+"""Slope of the smooth loss of a goal at its limit, per distance of UNITS."""
 
 CHANGE_COST, SQUARE_COST, SCORE_GAIN = 0.15, 0.1, 0.4
-"""Cost of a change of a gain by one step, and of its square, and gain of a percent of the score, in goals."""
+"""What a step of a gain costs, what its square costs, and what one percent of the score is worth [goals]."""
 
 EDGE = 0.125
 """Width of the smooth edge of the range within one standard deviation, in standard deviations."""
@@ -137,19 +137,20 @@ Walked = tuple[Row, Mapping[str, Array]]
 """A walk: its row of the study, and its mean strides less people's in standard deviations, by curve."""
 
 
-def walk(scenario: Scenario, contact: str, speed: float, gait: str) -> Walked | None:
+def walk(scenario: Scenario, contact: str, speed: float) -> Walked | None:
     """A walk on a contact model at a speed [m/s]; None for one that fell or cannot be compared."""
     try:
         outcome = simulate(scenario)
-        row = measured(outcome) | {CONTACT: contact, FORWARD: speed, GAIT: gait}
+        row = measured(outcome)
     except ParameterError:
         return None
-    if row.get("likeness.score") is None:
+    if "likeness.score" not in row:
         return None
     steady = Walk.of(outcome.signals, scenario)
     bands = {curve: CURVES[curve].people(steady.pace.group, steady.pace.leg) for curve in SCORED}
     means = {curve: steady.strides(curve).mean(axis=0) for curve in SCORED}
-    return row, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
+    case = {CONTACT: contact, FORWARD: speed, GAIT: row["style"]}
+    return row | case, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
 
 
 def share_within(curve: Array) -> float:
@@ -184,7 +185,6 @@ class Fit:
             ParameterError: the scenario cannot be used, or no gain has such a name.
         """
         self.scenario, self.client = scenario, client
-        self._gait = STYLED if scenario == STYLED else "default"
         self.names = [name for name in GAINS if not parts or any(part in name for part in parts)]
         if not self.names:
             raise ParameterError(
@@ -216,7 +216,7 @@ class Fit:
     def _submit(self, point: Array, contact: str, speed: float) -> Future[Walked | None]:
         gains = {name: repr(value) for name, value in self.gains(point).items()}
         walks = load_scenario(self.scenario, {**gains, "duration": DURATION, "contact": contact, FORWARD: str(speed)})
-        return self.client.submit(walk, walks, contact, speed, self._gait, pure=False)
+        return self.client.submit(walk, walks, contact, speed, pure=False)
 
 
 class Case(NamedTuple):
@@ -258,13 +258,13 @@ class Case(NamedTuple):
             name: share_within(curve + steps @ slopes) - share_within(curve)
             for name, (curve, slopes) in self.curves.items()
         }
+        share_changes = _share_changes(more)
         missed = 0.0
         for goal in GOALS:
             if goal.name in UNITS and goal.reached(self.row) is not None:
                 value, slopes = self.values[goal.name]
-                change = _change_of_shares(goal.name, more)
-                value = value + (steps @ slopes if change is None else change)
-                missed += float(expit(STEEPNESS * miss(goal, value, self.row)))
+                changed = value + share_changes.get(goal.name, steps @ slopes)
+                missed += float(expit(STEEPNESS * miss(goal, changed, self.row)))
         return missed, float(np.mean(list(more.values())))
 
 
@@ -290,15 +290,13 @@ def _slopes(changed: Sequence[Array], here: Array, signs: Array) -> Array:
     return signs[:, None] * (np.array(changed) - here)
 
 
-def _change_of_shares(goal: str, more: Mapping[str, float]) -> Array | None:
-    """Change of the values of a goal of shares within one standard deviation; None for another goal."""
-    for quantity, curve in PREDICTED.items():
-        changes = np.array([more[f"{joint}{curve}"] for joint in JOINTS])
-        if goal == f"{quantity} within 1 SD, mean [%]":
-            return changes.mean(keepdims=True)
-        if goal == f"{quantity} within 1 SD: hip, knee, ankle [%]":
-            return changes
-    return None
+def _share_changes(more: Mapping[str, float]) -> dict[str, Array]:
+    """Changes of the goals of shares within one standard deviation, from those of the curves [%], by goal."""
+    changes = {
+        quantity: np.array([more[f"{joint}{curve}"] for joint in JOINTS]) for quantity, curve in PREDICTED.items()
+    }
+    means = {f"{quantity} within 1 SD, mean [%]": change.mean(keepdims=True) for quantity, change in changes.items()}
+    return means | {"angles within 1 SD: hip, knee, ankle [%]": changes["angles"]}
 
 
 def main(scenario: str = "walk", *parts: str) -> None:
@@ -307,20 +305,20 @@ def main(scenario: str = "walk", *parts: str) -> None:
         fit = Fit(scenario, parts, client)
         point = np.zeros(len(fit.names))
         (here,) = fit.walks(point)
-        if here is None:
+        if not here:
             raise ParameterError(f"SCENARIO: a walk of {scenario} falls; allowed: those that walk; change its gains")
         print(f"{count(here)} goals\n", flush=True)
         is_better = True
         while is_better:
             signs = fit.signs(point)
             # A gain whose change makes a walk fall is left alone.
-            beside = [here if walks is None else walks for walks in fit.walks(*(point + np.diag(signs)))]
+            beside = [walks or here for walks in fit.walks(*(point + np.diag(signs)))]
             cases = [Case.of(*walks, signs) for walks in zip(here, zip(*beside, strict=True), strict=True)]
             is_better = False
             for largest in LARGEST_CHANGES:
                 trial = point + best_steps(cases, point.size, largest)
                 (there,) = fit.walks(trial)
-                if there is not None and count(there) > count(here):
+                if there and count(there) > count(here):
                     point, here, is_better = trial, there, True
                     for name, value in fit.gains(point).items():
                         print(f"{name}: {value:.4g}")

@@ -34,8 +34,8 @@ class FootRockers:
     """Time from touchdown until the foot is flat."""
 
     landing_load: float = quantity(0.16, "", 0.0, 1.0)
-    """Least vertical force under the heel from touchdown until the foot is flat, over the body weight. Without it the
-    heel, which takes over load as slowly as the pressure moves, leaves the ground again after its impact."""
+    """Least vertical force under the heel from touchdown until the foot is flat [body weights]. Without it the heel
+    leaves the ground again after its impact: the planned pressure moves to the new foot over all of double support."""
 
     ball: float = quantity(0.232, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
@@ -45,8 +45,8 @@ class FootRockers:
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
     unloading: float = quantity(8.0, "1/s", 0.5, 1e4)
-    """Rate at which the largest vertical force under the heel falls to zero until heel-off, over the body weight. A
-    heel that loses its load at once leaves it to the toes until the ball is compressed (docs/likeness.md, "A heel that
+    """Rate at which the largest vertical force under the heel falls to zero at heel-off [body weights per second].
+    If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness.md, "A heel that
     lands and leaves with its load")."""
 
     pitch: float = quantity(1.27, "rad", 0.0, 1.7)
