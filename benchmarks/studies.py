@@ -68,7 +68,7 @@ FORWARD = "controller.balanced.command.points.0.forward"
 PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
 TITLES = {
     "default": "The defaults, no style",
-    "normative": "The scenario `normative`, with people's angles and torques as a style",
+    "normative": "The scenario `normative`, with people's angles as a style",
 }
 """Of the gaits of the study of likeness."""
 WALKED = ("end", "speed m/s", "off the path cm", "cost of transport")

@@ -9,14 +9,14 @@ from typing import Any, ClassVar, Protocol
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.subject import Subject
-from humanwalk.control.joint_style import JointStyle, StyledTorques
+from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import TaskGains, critical
 from humanwalk.motion.followed import followed_motion
-from humanwalk.motion.gait_curves import normative_curves, normative_torques
+from humanwalk.motion.gait_curves import normative_curves
 from humanwalk.motion.recorded_motion import MotionMapping
 from humanwalk.motion.recorded_strides import RecordedGait, recorded_gait
 from humanwalk.parameter_file import load_as
-from humanwalk.quantity import ParameterError, file_path, quantity
+from humanwalk.quantity import ParameterError, file_path
 from humanwalk.terrain import Plane
 
 
@@ -43,17 +43,12 @@ class NoStyle:
 
 @dataclass(frozen=True)
 class NormativeStyle:
-    """Angles and torques of people at the same dimensionless speed: curves that the walk is scored with."""
+    """Angles of people at the same dimensionless speed: curves that the walk is scored with."""
 
-    gains: TaskGains = critical(300.0, 0.3)
-
-    torque_unit: float = quantity(4.0, "N m", 0.1, 1e6)
-    """Torque error of a joint that costs as much as an acceleration error of 1 m/s2 with the weight 1."""
+    gains: TaskGains = critical(300.0, 0.15)
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
-        leg = subject.skeleton.hip_height
-        torques = StyledTorques(normative_torques(leg, subject.known_mass), self.torque_unit)
-        return JointStyle(joints, normative_curves(leg, PELVIC_TILT), self.gains, torques)
+        return JointStyle(joints, normative_curves(subject.skeleton.hip_height, PELVIC_TILT), self.gains)
 
 
 @dataclass(frozen=True)

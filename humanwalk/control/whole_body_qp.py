@@ -16,7 +16,7 @@ from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.quadratic_program import QuadraticProgram
 from humanwalk.control.whole_body_contacts import EDGES, Contacts, Soles
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
-from humanwalk.control.whole_body_tasks import NO_STYLE, StyleTasks, TorqueTask, tasks
+from humanwalk.control.whole_body_tasks import Task, tasks
 from humanwalk.numerics import Array
 from humanwalk.walking.walking_reference import WalkingReference
 
@@ -116,7 +116,7 @@ class WholeBodyQp:
         self._torque_range = np.array((-torque_limits, torque_limits))
 
     def solve(
-        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: StyleTasks = NO_STYLE
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: Sequence[Task] = ()
     ) -> WholeBodySolution | None:
         """The solution, or None if the solver finds none; see `program`."""
         program, prescribed, contacts = self.program(body, reference, posture, style)
@@ -131,7 +131,7 @@ class WholeBodyQp:
         return WholeBodySolution(acceleration, forces, np.clip(torque[6:], -self.limits, self.limits))
 
     def program(
-        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: StyleTasks = NO_STYLE
+        self, body: Dynamics, reference: WalkingReference, posture: Posture, style: Sequence[Task] = ()
     ) -> tuple[QuadraticProgram, Array, Contacts]:
         """The program at one state.
 
@@ -158,7 +158,7 @@ class WholeBodyQp:
         # Each force along an edge costs its square.
         H, g = np.eye(k + m), np.zeros(k + m)
         H[:k, :k] += _pivot_cost(contacts, body, reference, p)
-        J, a, w = tasks(body, soles, reference, p, self._passive_ankles, style.motions)
+        J, a, w = tasks(body, soles, reference, p, self._passive_ankles, style)
         a -= J[:, m:] @ prescribed
         J = J[:, :m]
         WJ = w[:, None] * J
@@ -168,11 +168,9 @@ class WholeBodyQp:
 
         # The equations of motion: the generalized forces are A (f, v') + load.
         A, load = np.hstack((-contacts.J_edges[:, :m].T, body.M[:m, :m])), body.h[:m] + body.M[:m, m:] @ prescribed
-        effort = TorqueTask(self._effort, np.zeros(self._effort.size), p.torque_unit**-2)
-        for task in (effort, *style.torques):
-            rows = A[task.joints]
-            H += task.weight * rows.T @ rows
-            g += task.weight * (load[task.joints] - task.torque) @ rows
+        effort = A[self._effort] / p.torque_unit
+        H += effort.T @ effort
+        g += load[self._effort] / p.torque_unit @ effort
 
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
         toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]

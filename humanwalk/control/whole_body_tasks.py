@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.control.body_dynamics import Dynamics, FrameMotion
 from humanwalk.control.whole_body_contacts import SolesOnGround
 from humanwalk.control.whole_body_parameters import TaskGains, WholeBodyParameters
-from humanwalk.numerics import Array, Indices
+from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import cross_matrix, rotation_vector, yaw_pitch, yaw_roll
 from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference, com_acceleration
 
@@ -34,31 +34,6 @@ class Task(NamedTuple):
     J: Array
     acceleration: Array
     weight: float
-
-
-class TorqueTask(NamedTuple):
-    """Desired torques of joints.
-
-    Attributes:
-        joints: indices of the joints among the velocities, (n,).
-        torque: (n,) [N m].
-        weight: cost per squared error [1/(N m)2].
-    """
-
-    joints: Indices
-    torque: Array
-    weight: float
-
-
-class StyleTasks(NamedTuple):
-    """Tasks in addition to those of the plan."""
-
-    motions: Sequence[Task] = ()
-    torques: Sequence[TorqueTask] = ()
-
-
-NO_STYLE = StyleTasks()
-"""The plan alone."""
 
 
 class Foot(NamedTuple):

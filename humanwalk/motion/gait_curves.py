@@ -1,8 +1,7 @@
-"""Joint angles and torques of both legs over the gait cycle, as smooth periodic functions of phase and speed."""
+"""Joint angles of both legs over the gait cycle, as smooth periodic functions of phase and speed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import Leg
-from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, moment_scale, people
+from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, people
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 
@@ -19,8 +18,7 @@ HARMONICS = 8
 J. Biomech. 7(2) 157-159)."""
 
 ANGLES = ("hip_flexion_deg", "knee_flexion_deg", "ankle_dorsiflexion_deg")
-MOMENTS = tuple(f"{name}_moment_Nmm_per_kg" for name in ("hip_extensor", "knee_extensor", "ankle_plantarflexor"))
-"""Human curves of the joints of `styled_joints`."""
+"""Human angles of the joints of `styled_joints`."""
 
 
 def styled_joints(leg: Leg) -> tuple[str, str, str]:
@@ -29,7 +27,7 @@ def styled_joints(leg: Leg) -> tuple[str, str, str]:
 
 
 class PhaseMotion(NamedTuple):
-    """Angles [rad] or torques [N m] and their first two derivatives by the phase, shape (3,) each."""
+    """Angles [rad] and their first two derivatives by the phase, shape (3,) each."""
 
     value: Array
     slope: Array
@@ -38,12 +36,12 @@ class PhaseMotion(NamedTuple):
 
 @dataclass(frozen=True)
 class GaitCurves:
-    """Fourier series of the sagittal joint angles or torques of both legs, at one or more speeds.
+    """Fourier series of the sagittal joint angles of both legs, at one or more speeds.
 
     Attributes:
         speeds: At which the curves hold [m/s], increasing, shape (n,).
         coefficients: Complex c_k of value = Re sum c_k exp(2 pi i k phase), k from 0 to HARMONICS; right leg first;
-            shape (n, HARMONICS + 1, 2, 3) [rad or N m].
+            shape (n, HARMONICS + 1, 2, 3) [rad].
     """
 
     speeds: Array
@@ -56,7 +54,7 @@ class GaitCurves:
         Args:
             speeds: [m/s], increasing, shape (n,).
             values: At equal distances of the phase from 0 at a leg's touchdown, without the end of the cycle, shape
-                (n, points, 2, 3) [rad or N m].
+                (n, points, 2, 3) [rad].
         """
         coefficients = np.fft.rfft(values, axis=1)[:, : HARMONICS + 1] / values.shape[1]
         coefficients[:, 1:] *= 2.0
@@ -87,25 +85,8 @@ def normative_curves(leg_length: float, pelvic_tilt: float) -> GaitCurves:
         leg_length: Height of the hip joints in standing [m].
         pelvic_tilt: Of the pelvic plane in upright standing, where the model's hips are at 0 [rad].
     """
-    zero = np.array((pelvic_tilt, 0.0, 0.0))
-    return _of_people(ANGLES, leg_length, lambda degrees: np.radians(degrees) - zero)
-
-
-def normative_torques(leg_length: float, mass: float) -> GaitCurves:
-    """Torques of people's joints at these speeds, positive in flexion and dorsiflexion.
-
-    Args:
-        leg_length: Height of the hip joints in standing [m].
-        mass: Of the body [kg].
-    """
-    scale = -1e-3 * mass * moment_scale(leg_length)
-    return _of_people(MOMENTS, leg_length, lambda moments: scale * moments)
-
-
-def _of_people(names: Sequence[str], leg_length: float, convert: Callable[[Array], Array]) -> GaitCurves:
-    """Curves of people, converted from the units of the data."""
-    groups = [np.column_stack([people(name, group).mean for name in names]) for group in SPEED_GROUPS]
+    groups = [np.column_stack([people(name, group).mean for name in ANGLES]) for group in SPEED_GROUPS]
     # The cycle ends where it begins: the last point repeats the first.
-    values = convert(np.array(groups)[:, : CYCLE.size - 1])
+    angles = np.radians(np.array(groups)[:, : CYCLE.size - 1]) - np.array((pelvic_tilt, 0.0, 0.0))
     speeds = np.sqrt(GRAVITY * leg_length) * np.array([np.mean(ends) for ends in SPEED_GROUPS.values()])
-    return GaitCurves.through(speeds, np.stack((values, values), axis=2))
+    return GaitCurves.through(speeds, np.stack((angles, angles), axis=2))

@@ -13,7 +13,6 @@ from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
-from humanwalk.control.whole_body_tasks import NO_STYLE
 from humanwalk.systems.signal import Signal
 from humanwalk.walking.walking_reference import WalkingReference
 
@@ -59,7 +58,7 @@ class WholeBodyController(LeafSystem):
             parameters: tasks and limits.
             posture: joint angles [rad] by name around which arms and spine are held; 0 if not named.
             period: time between updates [s].
-            style: joint angles and torques that the legs follow softly.
+            style: joint angles that the legs follow softly.
         """
         super().__init__()
         self._dynamics = BodyDynamics(plant)
@@ -99,7 +98,7 @@ class WholeBodyController(LeafSystem):
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         radius = self._qp.parameters.rotation_radius
-        style = self._style.tasks(body, reference, radius) if self._style is not None else NO_STYLE
+        style = self._style.tasks(body, reference, radius) if self._style is not None else ()
         solution = self._qp.solve(body, reference, posture, style)
 
         _, failures, in_a_row = context.get_discrete_state(self._status).value()
