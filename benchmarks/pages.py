@@ -4,6 +4,7 @@ python benchmarks/pages.py
 python benchmarks/pages.py runs/balance_speeds runs/push_random    # and takes over the tables of these studies
 """
 
+import argparse
 import json
 import re
 import sys
@@ -15,6 +16,7 @@ from studies import STUDIES, keep, table
 
 from humanwalk.bench.result import COLUMNS, read_result
 from humanwalk.files import write_text
+from humanwalk.quantity import ParameterError
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
@@ -194,7 +196,12 @@ def filled(page: Path) -> str:
 
 
 if __name__ == "__main__":
-    for folder in sys.argv[1:]:
-        keep(Path(folder))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="*", type=Path, help="of shipped studies")
+    try:
+        for folder in parser.parse_args().folders:
+            keep(folder)
+    except ParameterError as error:
+        sys.exit(f"pages: {error}")
     for page in PAGES:
         write_text(page, filled(page))
