@@ -73,6 +73,11 @@ class Dynamics(NamedTuple):
     J: Array
     bias: Array
 
+    @property
+    def mass(self) -> float:
+        """Of the body [kg]: the inertia of its base against a translation."""
+        return float(self.M[3, 3])
+
     def frame(self, body: str) -> FrameMotion:
         """The frame of one body."""
         i = self.bodies.index(body)

@@ -115,7 +115,7 @@ class SolesOnGround(NamedTuple):
         feet = [reference.foot(side) for side in SIDES]
         load = np.array([foot.load for foot in feet])[soles.side]
         is_near = self.height[: load.size] < p.contact_height
-        least, largest = self._heel_limits(feet, is_near, GRAVITY * body.M[3, 3])
+        least, largest = self._heel_limits(feet, is_near, GRAVITY * body.mass)
         largest = np.minimum(p.max_contact_force * load, largest)
         (points,) = np.nonzero(is_near & (largest > 0.0))
         under = soles.body[points]

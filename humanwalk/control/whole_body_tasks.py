@@ -122,7 +122,7 @@ def _center_of_pressure(body: Dynamics, reference: WalkingReference, p: WholeBod
     """
     zmp = np.array((reference.zmp.real, reference.zmp.imag, reference.ground_height))
     p_ZP = cross_matrix(body.frame(PELVIS).p_WB - zmp)
-    scale = 1.0 / (body.M[3, 3] * (body.com.position[2] - reference.ground_height))
+    scale = 1.0 / (body.mass * (body.com.position[2] - reference.ground_height))
     J, bias = (scale * (part[:3] + p_ZP @ part[3:6])[:2] for part in (body.M, body.h))
     return Task(J, -bias, p.pressure_weight)
 

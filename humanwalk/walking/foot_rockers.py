@@ -95,6 +95,12 @@ class FootRockers:
         """Reference of a flat foot whose heel rises after a time [s].
 
         In a step up or down the heel keeps its load: the pressure has to stay where the foot is flat.
+
+        Args:
+            remaining: Time until heel-off [s].
+            yaw: Yaw of the foot [rad].
+            R_WS: Axes of the ground under the foot.
+            rollover: How the foot leaves the ground.
         """
         level = 1.0 - rollover.climbing
         largest = self.unloading * remaining / level if level > 0.0 else math.inf

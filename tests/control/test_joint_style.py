@@ -1,4 +1,4 @@
-"""A style wants the joint angles of its curves at the phase of each foot, and nothing in standing."""
+"""Tasks of a style: the joint angles of its curves at the phase of each foot; none in standing."""
 
 from dataclasses import replace
 
