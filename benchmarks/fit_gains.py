@@ -233,21 +233,24 @@ class Case(NamedTuple):
     curves: Mapping[str, tuple[Array, Array]]
 
     @staticmethod
-    def of(here: Walked, beside: Sequence[Walked], signs: Array) -> "Case":
+    def of(base: Walked, changed: Sequence[Walked], signs: Array) -> "Case":
         """The case of a walk.
 
         Args:
-            here: the walk.
-            beside: the walks with one gain each changed.
+            base: the walk.
+            changed: the walks with one gain each changed.
             signs: of these changes, (gains,).
         """
-        (row, curves), values = here, _values(here[0])
-        changed = [_values(other) for other, _ in beside]
+        (row, curves), values = base, _values(base[0])
+        changed_values = [_values(other) for other, _ in changed]
         return Case(
             row,
-            {goal: (value, _slopes([each[goal] for each in changed], value, signs)) for goal, value in values.items()},
             {
-                name: (curve, _slopes([each[name] for _, each in beside], curve, signs))
+                goal: (value, _slopes([each[goal] for each in changed_values], value, signs))
+                for goal, value in values.items()
+            },
+            {
+                name: (curve, _slopes([each[name] for _, each in changed], curve, signs))
                 for name, curve in curves.items()
             },
         )
@@ -285,9 +288,9 @@ def _values(row: Row) -> dict[str, Array]:
     return {goal.name: np.array(goal.values(row)) for goal in GOALS if goal.name in UNITS}
 
 
-def _slopes(changed: Sequence[Array], here: Array, signs: Array) -> Array:
+def _slopes(changed: Sequence[Array], base: Array, signs: Array) -> Array:
     """Changes of an array by a step of each gain, (gains, size)."""
-    return signs[:, None] * (np.array(changed) - here)
+    return signs[:, None] * (np.array(changed) - base)
 
 
 def _share_changes(more: Mapping[str, float]) -> dict[str, Array]:
@@ -304,25 +307,25 @@ def main(scenario: str = "walk", *parts: str) -> None:
     with local_client() as client:
         fit = Fit(scenario, parts, client)
         point = np.zeros(len(fit.names))
-        (here,) = fit.walks(point)
-        if not here:
+        (base,) = fit.walks(point)
+        if not base:
             raise ParameterError(f"SCENARIO: a walk of {scenario} falls; allowed: those that walk; change its gains")
-        print(f"{count(here)} goals\n", flush=True)
+        print(f"{count(base)} goals\n", flush=True)
         is_better = True
         while is_better:
             signs = fit.signs(point)
             # A gain whose change makes a walk fall is left alone.
-            beside = [walks or here for walks in fit.walks(*(point + np.diag(signs)))]
-            cases = [Case.of(*walks, signs) for walks in zip(here, zip(*beside, strict=True), strict=True)]
+            changed = [walks or base for walks in fit.walks(*(point + np.diag(signs)))]
+            cases = [Case.of(*walks, signs) for walks in zip(base, zip(*changed, strict=True), strict=True)]
             is_better = False
             for largest in LARGEST_CHANGES:
                 trial = point + best_steps(cases, point.size, largest)
-                (there,) = fit.walks(trial)
-                if there and count(there) > count(here):
-                    point, here, is_better = trial, there, True
+                (found,) = fit.walks(trial)
+                if found and count(found) > count(base):
+                    point, base, is_better = trial, found, True
                     for name, value in fit.gains(point).items():
                         print(f"{name}: {value:.4g}")
-                    print(f"{count(here)} goals\n", flush=True)
+                    print(f"{count(base)} goals\n", flush=True)
                     break
 
 
