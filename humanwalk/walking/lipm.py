@@ -140,6 +140,11 @@ class PeriodicGait(NamedTuple):
     hold: float = 0.0
 
     @property
+    def step(self) -> float:
+        """Duration of a step [s]."""
+        return self.double_support + self.single_support
+
+    @property
     def pivot_end(self) -> complex:
         """The centroidal moment pivot at the end of single support; at its beginning it is at -`pivot` [m]."""
         return self.roll + self.pivot
@@ -171,16 +176,23 @@ class PeriodicGait(NamedTuple):
         b = d + u (s' + a b'), where s' is the DCM at the start of the next step for b' = 0: two linear equations.
         """
         u = cmath.exp(1j * self.turn)
-        ua = u * math.exp(-frequency * (self.double_support + self.single_support))
+        ua = u * math.exp(-frequency * self.step)
         left = self.displacement.left + u * backward(self.segments("Right"), 0.0, frequency)
         right = self.displacement.right + u * backward(self.segments("Left"), 0.0, frequency)
         return PerStance(left=(left + ua * right) / (1.0 - ua**2), right=(right + ua * left) / (1.0 - ua**2))
 
-    def end_offset(self, stance: Side, frequency: float, following: PeriodicGait) -> complex:
-        """DCM at the end of a step on a stance foot, relative to it, if another gait follows [m]."""
-        if following == self:
+    def end_offset(self, stance: Side, frequency: float, *following: PeriodicGait) -> complex:
+        """DCM at the end of a step on a stance foot, relative to it [m].
+
+        Args:
+            stance: The stance foot.
+            frequency: Natural frequency of the pendulum [1/s].
+            following: The gaits of the next steps, the last one of all steps after them; without any, this one.
+        """
+        if all(gait == self for gait in following):
             return self.end_offsets(frequency).on(stance)
+        after, *others = following
         other = other_side(stance)
-        segments = (self.segments(other)[0], *following.segments(other)[1:])
-        start = backward(segments, following.end_offsets(frequency).on(other), frequency)
+        exchange = self.segments(other)[0]._replace(end=-after.pivot, duration=after.double_support)
+        start = backward((exchange, *after.along_foot), after.end_offset(other, frequency, *others), frequency)
         return self.displacement.on(stance) + cmath.exp(1j * self.turn) * start

@@ -19,7 +19,7 @@ from humanwalk.walking.lipm import PeriodicGait
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
-from humanwalk.walking.preview import FootholdPlanner, Preview
+from humanwalk.walking.preview import STEPS, FootholdPlanner, Preview
 from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.touch import STANDING_TIME, first_touches
@@ -79,14 +79,11 @@ class PhaseTransitions:
         if state.phase is Phase.WEIGHT_SHIFT:
             # The command may still change before the first step.
             timing = self._parameters.timing.at_speed(command.forward)
-            state = state._replace(timing=timing, caution=0.0)
-            state = self._cautious(state, command, self._preview(state, command)[1])
+            ready = self._look_ahead(state._replace(timing=timing, caution=0.0), command)
             if state.elapsed < timing.weight_shift:
-                return state
+                return ready._replace(path_correction=state.path_correction)
             # The weight shift takes the place of the first double support.
-            timing = state.timing
-            stepping = self._look_ahead(state._replace(elapsed=timing.double_support), command)
-            return self._lift_off(stepping._replace(elapsed=stepping.timing.double_support), body, command)
+            return self._lift_off(ready._replace(elapsed=ready.timing.double_support), body, command)
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
             return self._lift_off(state, body, command)
         if state.phase is Phase.SINGLE_SUPPORT and timing.has_landed(state.elapsed, body.foot(state.swing_side).force):
@@ -161,9 +158,9 @@ class PhaseTransitions:
         careful = self._cautious(state, command, preview)
         if careful is not state:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
-        goal = preview.footholds[0]
-        lift = self._added_lift(state, state.old_foot, goal)
-        factor = self._parameters.pacing.duration_factor(goal.ground - state.old_foot.ground, lift)
+        feet = (state.old_foot, state.stance_foot, *preview.footholds)
+        factor, *others = (self._duration_factor(state, *feet[k : k + 3 : 2]) for k in range(STEPS))
+        preview = preview._replace(durations=tuple(other / factor for other in others))
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
         # A step that takes longer is not ahead by what the gait covers in that time.
@@ -178,6 +175,11 @@ class PhaseTransitions:
         other = desired_gait(slower, command.at_pace(pace), self._parameters)
         moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
         return slower._replace(preview=moved)
+
+    def _duration_factor(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
+        """Duration of the step of a foot to its next foothold, relative to the ordinary one."""
+        lift = self._added_lift(state, start, goal)
+        return self._parameters.pacing.duration_factor(goal.ground - start.ground, lift)
 
     def _cautious(self, state: PlannerState, command: Command, preview: Preview) -> PlannerState:
         """The state with the caution that the next footholds require, if that is more, and with its timing."""

@@ -2,9 +2,10 @@
 
 The periodic gait has equal steps on a plane. The DCM at the end of a step is w times the integral of exp(-w t) z(t)
 over the future zero-moment point z. With q_k the displacement of the k-th foothold from the one before, beyond that of
-the gait, a = exp(-w T), and kappa as in `foothold_gain`, irregular footholds therefore shift it by
+the gait, T_k the duration of the step that begins on it, and kappa_k that step's `foothold_gain`, irregular footholds
+therefore shift it by
 
-    sum over k of a^(k-1) q_k / kappa.
+    sum over k of exp(-w (T_1 + ... + T_(k-1))) q_k / kappa_k.
 
 The heights of the footholds are a third coordinate of the same equation (Englsberger et al. 2015).
 """
@@ -13,7 +14,9 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, repeat
 from typing import NamedTuple
 
 from humanwalk.body import Side
@@ -80,12 +83,14 @@ class Preview(NamedTuple):
         moves: Displacements from each foothold to the next, beyond those of the gait [m]; 0 on a plane.
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
         ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
+        durations: Those of the steps after this one, relative to this one; 1 on a plane.
     """
 
     footholds: tuple[Foothold, ...] = ()
     moves: tuple[complex, ...] = ()
     pace: float = 1.0
     ahead: float = 0.0
+    durations: tuple[float, ...] = (1.0,) * (STEPS - 1)
 
     @property
     def first_move(self) -> complex:
@@ -102,11 +107,19 @@ class Preview(NamedTuple):
         return self._replace(moves=tuple(moves))
 
 
-def dcm_shift(increments: tuple[complex, ...], gait: PeriodicGait, frequency: float) -> complex:
-    """Displacement of the DCM at the end of the step by increments of the future footholds [m]; complex or heights."""
-    decay = math.exp(-frequency * (gait.double_support + gait.single_support))
-    total = sum(decay**k * increment for k, increment in enumerate(increments))
-    return total / foothold_gain(frequency, gait.double_support)
+def dcm_shift(increments: Sequence[complex], following: Sequence[PeriodicGait], frequency: float) -> complex:
+    """Displacement of the DCM at the end of the step by increments of the future footholds [m]; complex or heights.
+
+    Args:
+        increments: Of each foothold relative to the one before.
+        following: The gaits of the steps that begin on them, the last one of all steps after them.
+        frequency: Natural frequency of the pendulum [1/s].
+    """
+    total, decay = 0.0 + 0.0j, 1.0
+    for increment, gait in zip(increments, chain(following, repeat(following[-1])), strict=False):
+        total += decay * increment / foothold_gain(frequency, gait.double_support)
+        decay *= math.exp(-frequency * gait.step)
+    return total
 
 
 @dataclass(frozen=True)

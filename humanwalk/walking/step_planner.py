@@ -30,7 +30,7 @@ from humanwalk.walking.support import SupportMotion, support_motion
 from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
-from humanwalk.walking.zmp_reference import descent_shares, desired_gait, pivot_lead, remaining_pivot
+from humanwalk.walking.zmp_reference import descent_shares, desired_gaits, pivot_lead, remaining_pivot
 
 MIN_FORCE = 50.0
 """Vertical force from which on the center of pressure under a foot is known [N] (our choice)."""
@@ -114,9 +114,10 @@ class StepPlanner:
         p, timing = self.parameters, state.timing
         dcm_reference, dcm_rate = p.support.center_of(state.midpoint, state.heading), 0j
         if state.phase is Phase.WEIGHT_SHIFT:
-            gait = desired_gait(state, command, p)
-            end = gait.end_offsets(self.frequency).on(state.stance)
-            start = backward(gait.segments(state.stance)[1:], end, self.frequency)
+            gait, *following = desired_gaits(state, command.at_pace(state.preview.pace), p)
+            end = gait.end_offset(state.stance, self.frequency, *following)
+            end += dcm_shift(state.preview.moves, following, self.frequency) / state.direction
+            start = backward(gait.along_foot, end, self.frequency)
             change = state.world(p.support.center + start) - dcm_reference
             s = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
             dcm_reference, dcm_rate = dcm_reference + s.value * change, s.rate * change
@@ -137,12 +138,11 @@ class StepPlanner:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
         command = command.at_pace(preview.pace)
-        descent, next_descent, *_ = *descent_shares(state, p), 0.0, 0.0
-        gait, following = (desired_gait(state, command, p, share) for share in (descent, next_descent))
+        gait, *following = desired_gaits(state, command, p)
 
-        # Nominal DCM: backward from its value at the end of the step, that of the periodic gait on the next footholds.
-        end = state.world(p.support.center + gait.end_offset(state.stance, self.frequency, following))
-        end += dcm_shift(preview.moves, gait, self.frequency)
+        # Nominal DCM: backward from its value at the end of the step, that of the gait on the next footholds.
+        end = state.world(p.support.center + gait.end_offset(state.stance, self.frequency, *following))
+        end += dcm_shift(preview.moves, following, self.frequency)
         segments = remaining_pivot(state, gait, p)
         held = self._passive_pressure(state, body)
         if held is not None:
@@ -160,12 +160,12 @@ class StepPlanner:
 
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
-        sensitivity = foothold_gain(self.frequency, timing.double_support)
+        sensitivity = foothold_gain(self.frequency, following[0].double_support)
         desired = gait.displacement.on(state.stance) + preview.first_move / state.direction + sensitivity * error
 
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))
-        support = support_motion(state, dcm_shift(rises, gait, self.frequency).real, self.frequency)
+        support = support_motion(state, dcm_shift(rises, following, self.frequency).real, self.frequency)
         max_com_height = math.inf
         if preview.footholds:
             rolling = p.swing.rolling_share(state.stance_foot.step_to(preview.footholds[0]))
@@ -194,7 +194,7 @@ class StepPlanner:
             max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
             other_foot = swinging_foot(state, swing, phase_rate, p)
 
-        max_com_height += p.height.before_descent(descent, timing.step - state.elapsed)
+        max_com_height += p.height.before_descent(descent_shares(state, p)[0], timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
         next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
         elapsed, largest = state.elapsed + phase_rate * self._period, max(state.largest_error, abs(error))

@@ -1,19 +1,22 @@
 """The desired periodic gait, and the nominal centroidal moment pivot from now to the end of the step."""
 
 import cmath
+from dataclasses import replace
 from itertools import pairwise
 
 from humanwalk.walking.command import Command
 from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment, remainder
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
+from humanwalk.walking.preview import STEPS
 from humanwalk.walking.walking_reference import Phase
 
 
 def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tuple[float, ...]:
-    """Return how much of a step down this step is, and the next ones that are planned; 0 on a plane, 1 on stairs."""
+    """How much of a step down this step is, and each of the next ones; 0 on a plane and in standing, 1 on stairs."""
     feet = (state.stance_foot, *state.preview.footholds)
-    return tuple(parameters.swing.descent_share(start.step_to(goal)) for start, goal in pairwise(feet))
+    shares = [parameters.swing.descent_share(start.step_to(goal)) for start, goal in pairwise(feet)]
+    return (*shares, *(0.0,) * (STEPS - len(shares)))
 
 
 def desired_gait(
@@ -49,6 +52,23 @@ def desired_gait(
         # While the heel is up the ball is all that the foot stands on.
         hold=min((1.0 - descent) * rockers.lead(command.forward) + descent * rockers.descent, timing.single_support),
     )
+
+
+def desired_gaits(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> tuple[PeriodicGait, ...]:
+    """The desired gaits of this step and of the next ones, which have steps of the same length in their own time.
+
+    A step that takes longer begins with a DCM that is nearer to its stance foot.
+    """
+    gaits = []
+    for duration, descent in zip((1.0, *state.preview.durations), descent_shares(state, parameters), strict=True):
+        timed = state._replace(
+            timing=state.timing.stretched(duration),
+            path_correction=state.path_correction / duration,
+            turn=state.turn / duration,
+        )
+        speed = replace(command, forward=command.forward / duration, sideways=command.sideways / duration)
+        gaits.append(desired_gait(timed, speed, parameters, descent))
+    return tuple(gaits)
 
 
 def remaining_pivot(

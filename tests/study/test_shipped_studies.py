@@ -49,6 +49,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_rough_blind", 40),
         ("terrain_stones", 40),
         ("terrain_course", 40),
+        ("terrain_edges", 120),
         ("terrain_pushes", 80),
         ("terrain_bodies", 80),
     ],

@@ -114,20 +114,21 @@ def test_each_step_begins_where_the_one_before_ended(gait: PeriodicGait, frequen
         assert start_of_new == pytest.approx(end_of_old, abs=1e-12)
 
 
-@given(gaits, gaits, frequencies)
-def test_the_dcm_at_the_end_of_a_step_leads_into_the_gait_that_follows(
-    gait: PeriodicGait, following: PeriodicGait, frequency: float
+@given(gaits, st.lists(gaits, min_size=1, max_size=3), frequencies)
+def test_the_dcm_at_the_end_of_a_step_leads_into_the_gaits_that_follow(
+    gait: PeriodicGait, following: list[PeriodicGait], frequency: float
 ) -> None:
-    """Through a double support that begins where the pivot of this gait ends, and a single support of the other one."""
+    """Through a double support from the end of the pivot of one gait, and a single support, both of the next one."""
     for stance in SIDES:
-        other = other_side(stance)
-        start = (gait.end_offset(stance, frequency, following) - gait.displacement.on(stance)) / cmath.exp(
-            1j * gait.turn
-        )
-        path = (gait.segments(other)[0]._replace(end=-gait.pivot), *following.segments(other)[1:])
-        expected = following.end_offsets(frequency).on(other)
-        assert forward(path, start, frequency) == pytest.approx(expected, abs=1e-9)
-        assert gait.end_offset(stance, frequency, gait) == gait.end_offsets(frequency).on(stance)
+        this, side = gait, stance
+        dcm = gait.end_offset(stance, frequency, *following)
+        for after in following:
+            begin = this.segments(other_side(side))[0].start
+            path = (ZmpSegment(begin, -after.pivot, after.double_support), *after.along_foot)
+            start = (dcm - this.displacement.on(side)) * cmath.exp(-1j * this.turn)
+            dcm, this, side = forward(path, start, frequency), after, other_side(side)
+        assert dcm == pytest.approx(this.end_offsets(frequency).on(side), abs=1e-6)
+        assert gait.end_offset(stance, frequency, gait) == gait.end_offset(stance, frequency)
 
 
 @given(gaits)

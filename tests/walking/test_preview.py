@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise, repeat
 
 import pytest
 from hypothesis import given
@@ -63,21 +63,28 @@ def test_on_ice_the_steps_are_short() -> None:
     assert abs(step) / 2.0 / 0.95 <= PACING.friction_use * 0.15 + 1e-9
 
 
-@given(st.floats(0.2, 0.6), st.floats(-0.5, 0.5), st.floats(0.05, 0.2), st.floats(0.3, 0.6))
-def test_the_shift_of_the_dcm_is_that_of_the_displaced_zero_moment_points(
-    length: float, move: float, double: float, single: float
-) -> None:
-    """A foothold displaced by `move` with all after it, against the pendulum over many steps."""
-    periodic = gait(length, 0.0, double, single)
+moves = st.lists(st.floats(-0.5, 0.5), min_size=1, max_size=STEPS)
+durations = st.lists(st.tuples(st.floats(0.05, 0.2), st.floats(0.3, 0.6)), min_size=1, max_size=STEPS)
 
-    def dcm(displaced: float) -> complex:
-        feet = [0.0, *(k * length + displaced for k in range(1, 40))]
+
+@given(st.floats(0.2, 0.6), moves, durations)
+def test_the_shift_of_the_dcm_is_that_of_the_displaced_zero_moment_points(
+    length: float, increments: list[float], times: list[tuple[float, float]]
+) -> None:
+    """Footholds displaced with all after them, in steps of different duration, against the pendulum over many steps."""
+
+    def dcm(*displacements: float) -> complex:
+        feet = [0.0]
+        for displacement in (*displacements, *(0.0,) * 40):
+            feet.append(feet[-1] + length + displacement)
         segments = []
-        for old, new in pairwise(feet):
+        for (old, new), (double, single) in zip(pairwise(feet), chain(times, repeat(times[-1])), strict=False):
             segments += [ZmpSegment(old, new, double), ZmpSegment(new, new, single)]
         return backward(tuple(segments), feet[-1], FREQUENCY)
 
-    assert dcm(move) - dcm(0.0) == pytest.approx(dcm_shift((move,), periodic, FREQUENCY), abs=1e-9)
+    following = [gait(length, 0.0, *step) for step in times]
+    shift = dcm(*increments) - dcm(*(0.0 for _ in increments))
+    assert shift == pytest.approx(dcm_shift(increments, following, FREQUENCY), abs=1e-9)
 
 
 def test_moves_relative_to_a_slower_gait_lead_to_the_same_footholds() -> None:

@@ -52,6 +52,18 @@ def test_stairs_raise_and_lower_the_body_by_their_height(direction: str, sign: f
     assert min(abs(sole - sign * 4 * 0.185) for sole in soles) < 0.05
 
 
+@pytest.mark.parametrize("speed, seed", [(0.55, 1), (0.45, 2)])
+def test_steps_down_begin_with_the_first_step(speed: float, seed: int) -> None:
+    """The plan knows that the step over the edge takes longer than the one before it."""
+    stairs = "{course: {run_up: 0.5, pieces: [{stairs: {direction: down, rise: 0.185, tread: 0.28, number: 4}}, flat]}}"
+    start = {"start.joint_noise": "0.01", "start.rate_noise": "0.1", "seed": str(seed)}
+    forward = {"controller.balanced.command.points.0.forward": str(speed)}
+    outcome = simulate(load_scenario("walk", {"duration": "7.5", "terrain": stairs, **start, **forward}))
+    assert outcome.end == "completed"
+    ahead = outcome.signals["com.x_m"].to_numpy()[-1]
+    assert ahead > 0.5 + 4 * 0.28
+
+
 def test_the_held_walk_of_the_thesis_climbs_stairs_with_its_feet_on_the_treads() -> None:
     course = "{course: {run_up: 0.528, pieces: [{stairs: {rise: 0.15, tread: 0.3, number: 2}}, flat]}}"
     scenario = load_scenario("thesis_stairs", {"duration": "3.2", "terrain": course})

@@ -16,9 +16,15 @@ from humanwalk.walking.commanded_path import PathFollowing
 from humanwalk.walking.footholds import LEVEL, Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.preview import Preview
+from humanwalk.walking.preview import STEPS, Preview
 from humanwalk.walking.walking_reference import Phase
-from humanwalk.walking.zmp_reference import descent_shares, desired_gait, pivot_lead, remaining_pivot
+from humanwalk.walking.zmp_reference import (
+    descent_shares,
+    desired_gait,
+    desired_gaits,
+    pivot_lead,
+    remaining_pivot,
+)
 
 PARAMETERS = StepPlannerParameters()
 TIMING, PLACEMENT = PARAMETERS.timing, PARAMETERS.placement
@@ -126,10 +132,40 @@ def test_walking_backward_the_pivot_stays_at_the_zero_moment_point() -> None:
 def test_only_steps_down_are_descents(rise: float, next_rise: float) -> None:
     feet = (Foothold(1.0 - 0.1j, rise, LEVEL._replace(intercept=rise)), Foothold(1.5 + 0.1j, rise + next_rise))
     shares = descent_shares(state_at(preview=Preview(feet)), PARAMETERS)
-    for share, height in zip(shares, (rise, next_rise), strict=True):
+    for share, height in zip(shares, (rise, next_rise, 0.0), strict=True):
         assert 0.0 <= share <= 1.0
         assert (share > 0.0) == (height < -1e-9) or abs(height) < 1e-9
-    assert descent_shares(state_at(), PARAMETERS) == ()
+    assert descent_shares(state_at(), PARAMETERS) == (0.0,) * STEPS
+
+
+later = st.tuples(*(st.floats(0.6, 1.7),) * (STEPS - 1))
+
+
+@given(speeds, sideways, st.floats(-0.3, 0.3), later)
+def test_the_steps_that_follow_are_as_long_and_take_their_own_time(
+    forward: float, left: float, turn: float, durations: tuple[float, ...]
+) -> None:
+    state = state_at(preview=Preview(durations=durations), turn=turn, path_correction=0.1 - 0.05j)
+    gait, *following = desired_gaits(state, Command(forward, left), PARAMETERS)
+    for after, duration in zip(following, durations, strict=True):
+        for side in SIDES:
+            assert after.displacement.on(side) == pytest.approx(gait.displacement.on(side), abs=1e-12)
+        assert after.turn == pytest.approx(gait.turn)
+        assert after.double_support == pytest.approx(duration * gait.double_support)
+        assert after.step == pytest.approx(duration * gait.step)
+
+
+@given(st.floats(0.2, 1.0), st.floats(1.05, 1.7))
+def test_before_a_slower_step_the_body_is_less_far_ahead(speed: float, slower: float) -> None:
+    """A pendulum that has more time for the same way begins it with a smaller DCM."""
+    gait, *following = desired_gaits(state_at(preview=Preview(durations=(slower, 1.0))), Command(speed), PARAMETERS)
+    assert gait.end_offset("Left", 3.2, *following).real < gait.end_offset("Left", 3.2).real
+
+
+def test_on_a_plane_the_gaits_that_follow_are_the_same() -> None:
+    gaits = desired_gaits(state_at(turn=0.2, path_correction=0.1j), Command(0.7, 0.1), PARAMETERS)
+    assert len(gaits) == STEPS
+    assert set(gaits) == {gaits[0]}
 
 
 @given(st.floats(0.0, 0.8))
