@@ -153,7 +153,10 @@ def clearance(
         return Clearance().raised(ground.unseen)
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
-    if above.max() <= law.tolerance:
+    ends = WIDTH / (SAMPLES - 1)
+    # The toes of a foot that left its face steeply pitched pass below the plane.
+    below = np.where(np.abs(TIMES - 0.5) <= 0.5 - ends, np.maximum(-ordinary, 0.0), 0.0)
+    if above.max() <= law.tolerance and not below.any():
         return Clearance().raised(ground.unseen)
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
     # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
@@ -170,14 +173,13 @@ def clearance(
     ahead = (way(TIMES) - moved) * (goal.ground - start.ground)
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
     stands_out = np.interp(moved, share, above)
-    needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), 0.0)
+    needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), below)
     # Widened and then averaged over the same time, it is still sufficient, and smooth.
     around = np.lib.stride_tricks.sliding_window_view(np.pad(needed, 2 * WIDTH), 2 * WIDTH + 1).max(axis=1)
     smooth = np.lib.stride_tricks.sliding_window_view(around, 2 * WIDTH + 1) @ np.hanning(2 * WIDTH + 3)[1:-1]
     lift = smooth / (WIDTH + 1.0)
     # The foot does not sink between two heights.
     lift = np.minimum(np.maximum.accumulate(lift), np.maximum.accumulate(lift[::-1])[::-1])
-    ends = WIDTH / (SAMPLES - 1)
     lift *= quintic_blend(np.clip(TIMES / max(depart, ends), 0.0, 1.0))[0]
     lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, ends), 0.0, 1.0))[0]
     every = (SAMPLES - 1) // INTERVALS

@@ -12,7 +12,7 @@ from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Curb, Obstacle, Stairs
 from humanwalk.walking.felt_ground import FeltGround
 from humanwalk.walking.footholds import Foothold
-from humanwalk.walking.swing_clearance import INTERVALS, Clearance, ClearanceParameters, clearance
+from humanwalk.walking.swing_clearance import INTERVALS, TIMES, Clearance, ClearanceParameters, clearance
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 LAW = ClearanceParameters()
@@ -96,6 +96,18 @@ def test_a_curb_is_cleared(height: float, direction: str) -> None:
 def test_boxes_under_the_way_are_cleared(seed: int) -> None:
     course = Course(pieces=(Rough(length=4.0, height=0.05, seed=seed),), run_up=0.5)
     assert sole_above_ground(course, 1.062 + 0.1j, 1.862 + 0.1j) > -LAW.tolerance
+
+
+@settings(max_examples=20)
+@given(st.floats(0.0, 0.08), st.floats(0.3, 0.7))
+def test_toes_that_would_pass_below_the_plane_between_two_faces_are_lifted_to_it(depth: float, middle: float) -> None:
+    course = Course(pieces=(Rough(length=4.0, height=0.002),), run_up=0.5)
+    feet = Foothold.on(course, 1.062 + 0.1j), Foothold.on(course, 1.862 + 0.1j)
+    ordinary = 0.01 - depth * np.exp(-(((TIMES - middle) / 0.1) ** 2))
+    added = clearance(course, *feet, 0.0, SOLE, LAW, ordinary)
+    inner = (TIMES >= 0.2) & (TIMES <= 0.8)
+    lowest = ordinary + [added.at(float(progress)).value for progress in TIMES]
+    assert lowest[inner].min() >= -1e-3
 
 
 def test_the_lift_has_rates_that_are_derivatives_and_rests_at_both_ends() -> None:
