@@ -53,7 +53,7 @@ def test_stairs_raise_and_lower_the_body_by_their_height(direction: str, sign: f
 
 
 @pytest.mark.parametrize("speed, seed", [(0.55, 1), (0.45, 2)])
-def test_steps_down_begin_with_the_first_step(speed: float, seed: int) -> None:
+def test_it_walks_down_stairs_that_begin_right_at_the_start(speed: float, seed: int) -> None:
     """The plan knows that the step over the edge takes longer than the one before it."""
     stairs = "{course: {run_up: 0.5, pieces: [{stairs: {direction: down, rise: 0.185, tread: 0.28, number: 4}}, flat]}}"
     start = {"start.joint_noise": "0.01", "start.rate_noise": "0.1", "seed": str(seed)}
