@@ -62,6 +62,10 @@ class BaseOfSupport:
         """The nominal zero-moment point on a foot."""
         return ankle + self.center * cmath.exp(1j * heading)
 
+    def holds(self, dcm: complex, stance: complex, heading: float, other: complex) -> bool:
+        """Whether the body comes to rest with both feet where they are; arguments as in `clamp`."""
+        return abs(self.clamp(dcm, stance, heading, other) - dcm) < 1e-9
+
     def clamp(
         self, zmp: complex, stance: complex, heading: float, other: complex | None = None, on_ball: bool = False
     ) -> complex:

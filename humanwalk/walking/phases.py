@@ -15,7 +15,7 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.foot_references import foot_behind
 from humanwalk.walking.footholds import Foothold
-from humanwalk.walking.lipm import PeriodicGait
+from humanwalk.walking.lipm import PeriodicGait, divergent_component
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -40,9 +40,10 @@ class PhaseTransitions:
         first_swing: Side,
         ground: Ground,
         footholds: FootholdPlanner,
+        frequency: float,
         passive_ankles: Collection[Side] = (),
     ) -> None:
-        self._passive_ankles = passive_ankles
+        self._passive_ankles, self._frequency = passive_ankles, frequency
         self._parameters, self._ankle_height = parameters, ankle_height
         self._first_swing, self._ground, self._footholds = first_swing, ground, footholds
 
@@ -94,7 +95,7 @@ class PhaseTransitions:
         """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
         swing = replace(swing, lift=self._parameters.caution.lift_above(swing.lift, state.caution))
-        command = command.at_pace(state.preview.pace)
+        command = (state.preview.command or command).at_pace(state.preview.pace)
         foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
         toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
@@ -126,12 +127,13 @@ class PhaseTransitions:
         """
         right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
+        is_stepping = is_moving or not self._can_stand(right, left, state, body)
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
         caution = self._parameters.caution.after(state.caution, state.largest_error)
         beside_foot = path.nearest(body.foot(state.swing_side).position, command)
         landed = PlannerState(
-            phase=Phase.DOUBLE_SUPPORT if is_moving else Phase.STAND,
+            phase=Phase.DOUBLE_SUPPORT if is_stepping else Phase.STAND,
             elapsed=0.0,
             stance=state.swing_side,
             right=right,
@@ -144,13 +146,19 @@ class PhaseTransitions:
             path_correction=following.correction(path, path.nearest(midpoint, command), midpoint, command),
             height=state.height,
             height_rate=state.height_rate,
-            steps=state.steps + 1 if is_moving else 0,
+            steps=state.steps + 1 if is_stepping else 0,
             early=max(state.timing.step - state.elapsed, 0.0),
             timing=self._parameters.timing.at_speed(command.forward, caution),
             ground=state.ground,
             caution=caution,
         )
-        return self._look_ahead(landed, command, state.preview.ahead) if is_moving else landed
+        return self._look_ahead(landed, command, state.preview.ahead) if is_stepping else landed
+
+    def _can_stand(self, right: Foothold, left: Foothold, state: PlannerState, body: BodyState) -> bool:
+        """Whether the body comes to rest on these feet: they are level, and the DCM is within their base of support."""
+        dcm = divergent_component(body.com, body.com_velocity, self._frequency)
+        is_level = abs(right.step_to(left)) <= self._parameters.pacing.free_rise
+        return is_level and self._parameters.support.holds(dcm, right.position, state.heading, left.position)
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""
@@ -160,7 +168,8 @@ class PhaseTransitions:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
         factor, *others = (self._duration_factor(state, *feet[k : k + 3 : 2]) for k in range(STEPS))
-        preview = preview._replace(durations=tuple(other / factor for other in others))
+        kept = command if any(preview.moves) else None
+        preview = preview._replace(durations=tuple(other / factor for other in others), command=kept)
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
         # A step that takes longer is not ahead by what the gait covers in that time.

@@ -26,6 +26,7 @@ from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Ground
+from humanwalk.walking.command import Command
 from humanwalk.walking.foot_placement import OUTWARD, StepPlacement, foothold_gain
 from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold
 from humanwalk.walking.lipm import PeriodicGait
@@ -84,6 +85,7 @@ class Preview(NamedTuple):
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
         ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
         durations: Those of the steps after this one, relative to this one; 1 on a plane.
+        command: The command for which the moves were planned: it changes at touchdown. None on a plane.
     """
 
     footholds: tuple[Foothold, ...] = ()
@@ -91,6 +93,7 @@ class Preview(NamedTuple):
     pace: float = 1.0
     ahead: float = 0.0
     durations: tuple[float, ...] = (1.0,) * (STEPS - 1)
+    command: Command | None = None
 
     @property
     def first_move(self) -> complex:

@@ -84,7 +84,9 @@ class StepPlanner:
             parameters.pacing,
             parameters.height.walking * standing_com_height,
         )
-        self._phases = PhaseTransitions(parameters, ankle_height, first_swing, ground, self._footholds, passive_ankles)
+        self._phases = PhaseTransitions(
+            parameters, ankle_height, first_swing, ground, self._footholds, self.frequency, passive_ankles
+        )
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
         """The state in standing; the commanded path begins along a heading [rad]."""
@@ -137,7 +139,7 @@ class StepPlanner:
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
-        command = command.at_pace(preview.pace)
+        command = (preview.command or command).at_pace(preview.pace)
         gait, *following = desired_gaits(state, command, p)
 
         # Nominal DCM: backward from its value at the end of the step, that of the gait on the next footholds.

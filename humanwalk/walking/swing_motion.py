@@ -68,8 +68,12 @@ def _with_foothold(
     yaw = state.heading + state.turn * state.timing.step
     is_final = state.timing.step - state.elapsed < placement.face_freeze_time
     stance = (state.stance_foot, state.stance, state.direction)
-    place = footholds.nearest(state.ground, goal.desired, yaw, *stance, swing.foothold.face, goal.expected, is_final)
-    feet = (state.old_foot, place)
+    place, landing = (
+        footholds.nearest(state.ground, point, yaw, *stance, swing.foothold.face, goal.expected, is_final)
+        for point in (goal.desired, goal.expected)
+    )
+    # What balance requires now may be near a riser for a moment, and a foot that is late over it cannot catch up.
+    feet = (state.old_foot, landing)
     added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary)
     position = swing.foothold.position + smoothing * (place.position - swing.foothold.position)
     return swing._replace(

@@ -1,15 +1,16 @@
 """Transitions between standing, weight shift, double support and single support."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
-from humanwalk.terrain.course import Course
-from humanwalk.terrain.steps import Curb
+from humanwalk.terrain.course import Course, Piece
+from humanwalk.terrain.steps import Curb, Stairs
 from humanwalk.walking.command import Command
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import STOP_TURN, PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState
@@ -24,8 +25,9 @@ CAREFUL = PARAMETERS.timing.step
 FOOTHOLDS = FootholdPlanner(
     SoleExtent(0.055, 0.211, 0.048), PARAMETERS.footholds, PARAMETERS.placement, PARAMETERS.pacing, com_height=0.95
 )
-PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1), FOOTHOLDS)
-LEVEL = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(), FOOTHOLDS)
+FREQUENCY = 3.2
+PHASES = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(slope=0.1), FOOTHOLDS, FREQUENCY)
+LEVEL = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(), FOOTHOLDS, FREQUENCY)
 
 
 def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
@@ -34,6 +36,10 @@ def foot(position: complex, force: float = 350.0, **changes: Any) -> FootState:
 
 
 BODY = BodyState(0j, 0j, 0.97, right=foot(-0.1j), left=foot(0.1j))
+
+
+def on_course(*pieces: Piece) -> PhaseTransitions:
+    return PhaseTransitions(PARAMETERS, ANKLE, "Right", Course(pieces, run_up=0.6), FOOTHOLDS, FREQUENCY)
 
 
 def in_single_support(progress: float = 0.5, steps: int = 1, phases: PhaseTransitions = PHASES) -> PlannerState:
@@ -109,7 +115,7 @@ def test_steps_on_a_plane_are_ordinary() -> None:
 
 @pytest.mark.parametrize("height", [0.015, 0.05])
 def test_steps_to_a_curb_are_careful(height: float) -> None:
-    phases = PhaseTransitions(PARAMETERS, ANKLE, "Right", Course((Curb(height=height),), run_up=0.6), FOOTHOLDS)
+    phases = on_course(Curb(height=height))
     state = phases.advance(phases.start(BODY, 0.0), BODY, WALK)
     assert state.phase is Phase.WEIGHT_SHIFT
     assert state.caution == pytest.approx(min(height / PARAMETERS.caution.full_height, 1.0))
@@ -119,6 +125,37 @@ def test_steps_to_a_curb_are_careful(height: float) -> None:
 def test_the_last_step_ends_in_standing() -> None:
     state = PHASES.advance(in_single_support(1.01), landed_at(-0.1j), STOP)
     assert (state.phase, state.steps) == (Phase.STAND, 0)
+
+
+@pytest.mark.parametrize("velocity", [-0.5, 0.8, 0.6j, -0.6j])
+def test_the_walker_goes_on_while_its_balance_does_not_hold_on_the_feet(velocity: complex) -> None:
+    """The DCM is further than the feet reach, though the command is to stop."""
+    body = replace(landed_at(-0.1j), com_velocity=velocity)
+    assert PHASES.advance(in_single_support(1.01), body, STOP).phase is Phase.DOUBLE_SUPPORT
+    slow = replace(body, com_velocity=0.1 * velocity)
+    assert PHASES.advance(in_single_support(1.01), slow, STOP).phase is Phase.STAND
+
+
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_the_walker_does_not_stop_with_a_foot_on_each_of_two_treads(direction: Literal["up", "down"]) -> None:
+    stairs = on_course(Stairs(rise=0.17, tread=0.28, direction=direction))
+    state = in_single_support(1.01, phases=stairs)
+    apart = replace(BODY, com=0.7, right=foot(0.8 - 0.1j), left=foot(0.5 + 0.1j))
+    state = stairs.advance(state._replace(left=Foothold.on(state.ground, apart.left.position)), apart, STOP)
+    assert state.phase is Phase.DOUBLE_SUPPORT
+    together = replace(apart, com=0.8, left=foot(0.8 + 0.1j))
+    state = stairs.advance(state._replace(phase=Phase.SINGLE_SUPPORT, elapsed=state.timing.step), together, STOP)
+    assert state.phase is Phase.STAND
+
+
+def test_on_irregular_ground_the_command_changes_at_touchdown() -> None:
+    """The next footholds were planned for it."""
+    curb, plane = (
+        phases.advance(in_single_support(1.01, phases=phases), landed_at(0.3 - 0.1j), WALK)
+        for phases in (on_course(Curb(height=0.1)), LEVEL)
+    )
+    assert curb.preview.command == WALK
+    assert plane.preview.command is None
 
 
 @pytest.mark.parametrize("force, is_moved", [(30.0, True), (120.0, False)])
