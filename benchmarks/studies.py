@@ -65,7 +65,7 @@ DRAWN: dict[str, Callable[[Results], Figure]] = {"actuations": tracking_by_group
 """Pictures of their own."""
 
 FORWARD = "controller.balanced.command.points.0.forward"
-PUSH_TIME, PUSH_DIRECTION = "pushes.given.0.time", "pushes.given.0.direction"
+PUSH_TIME, PUSH_DIRECTION, PUSH_IMPULSE = (f"pushes.given.0.{field}" for field in ("time", "direction", "impulse"))
 TITLES = {
     "default": "The defaults, no style",
     "normative": "The scenario `normative`, with people's angles as a style",
@@ -155,11 +155,18 @@ def _pushes_by_time(rows: list[Row]) -> str:
     return _pushes(rows, "push at", lambda row: f"{row[PUSH_TIME]:.2f} s", end)
 
 
-def subjects_pushes() -> str:
-    def section(rows: list[Row]) -> str:
-        return _pushes(rows, "body", lambda row: row["body"], lambda row: "up" if row["survived"] else row["end"])
+def balance_standing() -> str:
+    return study_section(
+        "balance_standing", lambda rows: _pushes(rows, "push", lambda row: f"{row[PUSH_IMPULSE]:g} N s", _up_or_end)
+    )
 
-    return study_section("subjects_pushes", section)
+
+def subjects_pushes() -> str:
+    return study_section("subjects_pushes", lambda rows: _pushes(rows, "body", lambda row: row["body"], _up_or_end))
+
+
+def _up_or_end(row: Row) -> str:
+    return "up" if row["survived"] else row["end"]
 
 
 def _pushes(rows: list[Row], heading: str, group: Callable[[Row], str], end: Callable[[Row], str]) -> str:
@@ -347,6 +354,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_pushes,
         balance_pushes_60,
         push_random,
+        balance_standing,
         balance_seeds,
         balance_invariance,
     ),

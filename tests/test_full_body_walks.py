@@ -1,4 +1,4 @@
-"""Whole walks of the balanced walker obey the command and Newton's law: turn, backward, push, stop."""
+"""Whole walks of the balanced walker obey the command and Newton's law: turn, backward, push, stop, stand."""
 
 from functools import cache
 from itertools import pairwise
@@ -204,3 +204,22 @@ def test_stopping_ends_in_standing_on_both_feet() -> None:
         assert walk.events(side).touchdown_times.max() < STANDING_FROM
         share = walk[f"{side.lower()}_foot.force_z_N"][standing] / (MASS * GRAVITY)
         assert 0.3 < share.min() < share.max() < 0.7
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0], ids=["forward", "left", "backward"])
+def test_a_standing_body_that_is_pushed_steps_and_stands_again(degrees: float) -> None:
+    push = f"{{time: 1.0, impulse: {2.0 * IMPULSE}, direction: {np.deg2rad(degrees)}}}"
+    outcome = simulate(
+        parse_scenario(f"""
+        duration: 6.0
+        controller: {{balanced: {{command: {{points: []}}}}}}
+        pushes: {{given: [{push}]}}
+    """)
+    )
+    assert outcome.end == "completed"
+    signals = {name: outcome.signals[name].to_numpy() for name in outcome.signals.column_names}
+    way = [signals[f"com.{axis}_m"][-1] - signals[f"com.{axis}_m"][0] for axis in "xy"]
+    assert np.dot(way, (np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees)))) > 0.2
+    assert np.hypot(signals["com.velocity_x_m_s"][-1], signals["com.velocity_y_m_s"][-1]) < 0.05
+    forces = [signals[f"{side}_foot.force_z_N"][-1] for side in ("right", "left")]
+    assert min(forces) > 0.2 * MASS * GRAVITY

@@ -39,6 +39,10 @@ class StepPlannerParameters:
     stop_speed: float = quantity(0.05, "m/s", 0.0, 0.5)
     """Commanded speed up to which a step is the last one."""
 
+    stand_spread: float = quantity(0.2, "m", 0.05, 1.0)
+    """Distance of a foot from its place beside the other one up to which a step is the last one. It is shorter than a
+    tread: with a foot on each of two treads the walker fell (docs/balance.md, "Standing")."""
+
     dcm_gain: float = quantity(1.0, "", 0.0, 5.0)
     """Rate at which an error of the DCM decays, relative to the natural frequency, within the base of support."""
 

@@ -1,15 +1,17 @@
 """The phases of the walk: when one ends, and the state in which the next one begins.
 
-STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND.
+STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND. A body that two
+feet in standing do not hold goes on with DOUBLE_SUPPORT.
 """
 
+import cmath
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from humanwalk.body import Side
+from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
@@ -75,6 +77,8 @@ class PhaseTransitions:
         timing = state.timing
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
+        if not state.is_stepping and not self._is_held(state.right, state.left, state.heading, body):
+            return self._catch(state, body, command)
         if state.phase is Phase.STAND and is_moving:
             state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT:
@@ -127,7 +131,7 @@ class PhaseTransitions:
         """
         right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
-        is_stepping = is_moving or not self._can_stand(right, left, state, body)
+        is_stepping = is_moving or not self._can_stand(right, left, state.heading, body)
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
         caution = self._parameters.caution.after(state.caution, state.largest_error)
@@ -154,11 +158,29 @@ class PhaseTransitions:
         )
         return self._look_ahead(landed, command, state.preview.ahead) if is_stepping else landed
 
-    def _can_stand(self, right: Foothold, left: Foothold, state: PlannerState, body: BodyState) -> bool:
-        """Whether the body comes to rest on these feet: they are level, and the DCM is within their base of support."""
+    def _catch(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+        """A careful step from standing, on the foot that is nearer to the DCM across the heading."""
         dcm = divergent_component(body.com, body.com_velocity, self._frequency)
-        is_level = abs(right.step_to(left)) <= self._parameters.pacing.free_rise
-        return is_level and self._parameters.support.holds(dcm, right.position, state.heading, left.position)
+        stance = min(SIDES, key=lambda side: abs(((dcm - state.foot(side).position) / state.direction).imag))
+        careful = state._replace(
+            phase=Phase.DOUBLE_SUPPORT,
+            elapsed=0.0,
+            stance=stance,
+            timing=self._parameters.timing.at_speed(command.forward, 1.0),
+            caution=1.0,
+        )
+        return self._look_ahead(careful, command)
+
+    def _can_stand(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> bool:
+        """Whether the body comes to rest on these feet, and they are side by side."""
+        p = self._parameters
+        apart = (left.position - right.position) / cmath.exp(1j * heading) - 1j * p.placement.step_width
+        return abs(apart) <= p.stand_spread and self._is_held(right, left, heading, body)
+
+    def _is_held(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> bool:
+        """Whether the DCM is within the base of support of these feet."""
+        dcm = divergent_component(body.com, body.com_velocity, self._frequency)
+        return self._parameters.support.holds(dcm, right.position, heading, left.position)
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""

@@ -43,6 +43,16 @@ def test_between_two_feet_an_error_sideways_has_a_greater_weight_than_one_forwar
     assert abs(back - stance) > SUPPORT.back + SUPPORT.half_width
 
 
+@given(points, points, points, headings)
+def test_both_feet_hold_a_dcm_that_the_zero_moment_point_can_be_at(
+    dcm: complex, stance: complex, other: complex, heading: float
+) -> None:
+    within = SUPPORT.clamp(dcm, stance, heading, other)
+    assert SUPPORT.holds(dcm, stance, heading, other) == (within == pytest.approx(dcm, abs=1e-9))
+    assert SUPPORT.holds(stance, stance, heading, other)
+    assert not SUPPORT.holds(stance + other + 10.0, stance, heading, other)
+
+
 def test_the_nominal_zero_moment_point_is_ahead_of_the_ankle() -> None:
     assert SUPPORT.center_of(1.0, cmath.pi / 2) == pytest.approx(1.0 + 1j * SUPPORT.center)
 

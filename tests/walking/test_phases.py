@@ -7,7 +7,8 @@ import pytest
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
-from humanwalk.terrain.course import Course, Piece
+from humanwalk.terrain.course import Course
+from humanwalk.terrain.piece import Piece
 from humanwalk.terrain.steps import Curb, Stairs
 from humanwalk.walking.command import Command
 from humanwalk.walking.footholds import Foothold
@@ -139,13 +140,28 @@ def test_the_walker_goes_on_while_its_balance_does_not_hold_on_the_feet(velocity
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_the_walker_does_not_stop_with_a_foot_on_each_of_two_treads(direction: Literal["up", "down"]) -> None:
     stairs = on_course(Stairs(rise=0.17, tread=0.28, direction=direction))
+    apart = replace(BODY, com=0.7, right=foot(0.8 - 0.1j), left=foot(0.52 + 0.1j))
     state = in_single_support(1.01, phases=stairs)
-    apart = replace(BODY, com=0.7, right=foot(0.8 - 0.1j), left=foot(0.5 + 0.1j))
     state = stairs.advance(state._replace(left=Foothold.on(state.ground, apart.left.position)), apart, STOP)
     assert state.phase is Phase.DOUBLE_SUPPORT
     together = replace(apart, com=0.8, left=foot(0.8 + 0.1j))
     state = stairs.advance(state._replace(phase=Phase.SINGLE_SUPPORT, elapsed=state.timing.step), together, STOP)
     assert state.phase is Phase.STAND
+
+
+@pytest.mark.parametrize(
+    "velocity, stance", [(0.8 + 0.05j, "Left"), (-0.3 - 0.05j, "Right"), (0.5j, "Left"), (-0.5j, "Right")]
+)
+@pytest.mark.parametrize("phase", [Phase.STAND, Phase.WEIGHT_SHIFT])
+def test_a_push_in_standing_leads_to_a_careful_step_on_the_foot_nearer_to_the_dcm(
+    phase: Phase, velocity: complex, stance: str
+) -> None:
+    standing = LEVEL.start(BODY, 0.0)._replace(phase=phase)
+    assert LEVEL.advance(standing, replace(BODY, com_velocity=0.1 * velocity), STOP).phase is phase
+    caught = LEVEL.advance(standing, replace(BODY, com_velocity=velocity), STOP)
+    assert (caught.phase, caught.elapsed, caught.stance, caught.steps) == (Phase.DOUBLE_SUPPORT, 0.0, stance, 0)
+    assert (caught.caution, caught.timing.step) == (1.0, CAREFUL)
+    assert len(caught.preview.footholds) > 0
 
 
 def test_on_irregular_ground_the_command_changes_at_touchdown() -> None:

@@ -64,6 +64,22 @@ def test_it_walks_down_stairs_that_begin_right_at_the_start(speed: float, seed: 
     assert ahead > 0.5 + 4 * 0.28
 
 
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_on_stairs_it_stops_with_both_feet_on_one_tread(direction: str) -> None:
+    flight = f"{{direction: {direction}, rise: 0.17, tread: 0.28, number: 8}}"
+    stairs = f"{{course: {{run_up: 0.6, pieces: [{{stairs: {flight}}}, flat]}}}}"
+    points = "[{time: 0.0, forward: 0.5}, {time: 4.0, forward: 0.0}]"
+    outcome = simulate(
+        load_scenario("walk", {"duration": "9.5", "terrain": stairs, "controller.balanced.command.points": points})
+    )
+    assert outcome.end == "completed"
+    signals = {name: outcome.signals[name].to_numpy() for name in outcome.signals.column_names}
+    assert abs(signals["com.velocity_x_m_s"][-1]) < 0.05
+    assert 0.6 < signals["com.x_m"][-1] < 0.6 + 8 * 0.28
+    right, left = (signals[f"{side}_sole.z_m"][-1] for side in ("right", "left"))
+    assert right == pytest.approx(left, abs=0.03)
+
+
 def test_the_held_walk_of_the_thesis_climbs_stairs_with_its_feet_on_the_treads() -> None:
     course = "{course: {run_up: 0.528, pieces: [{stairs: {rise: 0.15, tread: 0.3, number: 2}}, flat]}}"
     scenario = load_scenario("thesis_stairs", {"duration": "3.2", "terrain": course})

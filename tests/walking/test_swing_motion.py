@@ -1,0 +1,60 @@
+"""The swinging foot clears what it will step over."""
+
+import pytest
+
+from humanwalk.body.contact import SoleExtent
+from humanwalk.terrain.course import Course
+from humanwalk.terrain.steps import Obstacle
+from humanwalk.walking.command import Command
+from humanwalk.walking.parameters import StepPlannerParameters
+from humanwalk.walking.phases import PhaseTransitions
+from humanwalk.walking.planner_state import PlannerState, Swing
+from humanwalk.walking.preview import FootholdPlanner
+from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
+from humanwalk.walking.walking_reference import BodyState, FootState, Phase
+
+PARAMETERS = StepPlannerParameters()
+WALK = Command(0.6)
+PERIOD = 0.006
+FOOTHOLDS = FootholdPlanner(
+    SoleExtent(0.055, 0.211, 0.048), PARAMETERS.footholds, PARAMETERS.placement, PARAMETERS.pacing, com_height=0.95
+)
+BEAM = Course((Obstacle(height=0.15, thickness=0.1, length=0.7),), run_up=0.0)
+"""The beam is 0.3 to 0.4 m ahead."""
+BEYOND, AT_THE_BEAM = 0.7 - 0.09j, 0.47 - 0.09j
+
+
+def foot(position: complex) -> FootState:
+    return FootState(position, 0j, height=0.07, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=350.0)
+
+
+def swing_over_the_beam() -> tuple[PlannerState, Swing]:
+    body = BodyState(0j, 0j, 0.97, right=foot(-0.09j), left=foot(0.09j))
+    phases = PhaseTransitions(PARAMETERS, 0.07, "Right", BEAM, FOOTHOLDS, 3.2)
+    state = phases.start(body, 0.0)._replace(phase=Phase.WEIGHT_SHIFT, elapsed=PARAMETERS.timing.weight_shift)
+    state = phases.advance(state, body, WALK)
+    assert state.swing is not None
+    return state, state.swing
+
+
+def swung(*goals: tuple[complex, complex]) -> Swing:
+    """The swing after control periods in which balance desires a foothold, and will desire another at touchdown."""
+    state, swing = swing_over_the_beam()
+    for desired, expected in goals:
+        goal = SwingGoal(desired, expected, state.timing.step - state.elapsed)
+        swing = advanced_swing(state, swing, goal, WALK, PARAMETERS, FOOTHOLDS, PERIOD)
+        state = state._replace(elapsed=state.elapsed + PERIOD, swing=swing)
+    return swing
+
+
+def test_a_foothold_that_is_desired_for_a_moment_does_not_change_how_the_foot_clears_a_beam() -> None:
+    steady = swung(*[(BEYOND, BEYOND)] * 6)
+    assert max(steady.clearance.lift) > 0.15
+    disturbed = swung((BEYOND, BEYOND), *[(AT_THE_BEAM, BEYOND)] * 4, (BEYOND, BEYOND))
+    assert disturbed.clearance == steady.clearance
+    assert disturbed.foothold.position != steady.foothold.position
+
+
+def test_a_foot_that_will_land_at_the_beam_sinks_last() -> None:
+    assert swung((AT_THE_BEAM, AT_THE_BEAM)).clearance.arrive < 1.0
+    assert swung((BEYOND, BEYOND)).clearance.arrive == pytest.approx(1.0)
