@@ -13,6 +13,9 @@ CORRECTING = 0.7
 """Share of the distance of the nominal zero-moment point from the edge of the base of support that is there for
 corrections (our choice)."""
 
+ROUNDING = 1e-9
+"""Distance from the base of support up to which a point is within it [m]."""
+
 
 @dataclass(frozen=True)
 class BaseOfSupport:
@@ -62,9 +65,10 @@ class BaseOfSupport:
         """The nominal zero-moment point on a foot."""
         return ankle + self.center * cmath.exp(1j * heading)
 
-    def holds(self, dcm: complex, stance: complex, heading: float, other: complex) -> bool:
-        """Whether the body comes to rest with both feet where they are; arguments as in `clamp`."""
-        return abs(self.clamp(dcm, stance, heading, other) - dcm) < 1e-9
+    def outside(self, dcm: complex, stance: complex, heading: float, other: complex) -> complex:
+        """Displacement of a DCM from where both feet hold the body [m]; arguments as in `clamp`."""
+        found = dcm - self.clamp(dcm, stance, heading, other)
+        return found if abs(found) > ROUNDING else 0.0
 
     def clamp(
         self, zmp: complex, stance: complex, heading: float, other: complex | None = None, on_ball: bool = False

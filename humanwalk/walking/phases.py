@@ -77,7 +77,7 @@ class PhaseTransitions:
         timing = state.timing
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
-        if not state.is_stepping and not self._is_held(state.right, state.left, state.heading, body):
+        if not state.is_stepping and self._is_lost(state, body, command):
             return self._catch(state, body, command)
         if state.phase is Phase.STAND and is_moving:
             state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
@@ -171,16 +171,22 @@ class PhaseTransitions:
         )
         return self._look_ahead(careful, command)
 
+    def _is_lost(self, state: PlannerState, body: BodyState, command: Command) -> bool:
+        """Whether two feet do not hold the body; in the weight shift it may lean into the commanded direction."""
+        outside = self._outside(state.right, state.left, state.heading, body)
+        leans = (outside * (command.velocity * state.direction).conjugate()).real > 0.0
+        return outside != 0.0 and not (state.phase is Phase.WEIGHT_SHIFT and leans)
+
     def _can_stand(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> bool:
         """Whether the body comes to rest on these feet, and they are side by side."""
         p = self._parameters
         apart = (left.position - right.position) / cmath.exp(1j * heading) - 1j * p.placement.step_width
-        return abs(apart) <= p.stand_spread and self._is_held(right, left, heading, body)
+        return abs(apart) <= p.stand_spread and self._outside(right, left, heading, body) == 0.0
 
-    def _is_held(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> bool:
-        """Whether the DCM is within the base of support of these feet."""
+    def _outside(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> complex:
+        """Displacement of the DCM from the base of support of two feet [m]."""
         dcm = divergent_component(body.com, body.com_velocity, self._frequency)
-        return self._parameters.support.holds(dcm, right.position, heading, left.position)
+        return self._parameters.support.outside(dcm, right.position, heading, left.position)
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""

@@ -72,20 +72,15 @@ class StepPlanner:
         ground: Ground,
         passive_ankles: Collection[Side] = (),
     ) -> None:
-        self.parameters = parameters
-        self.frequency = natural_frequency(parameters.height.walking * standing_com_height)
+        self.parameters = p = parameters
+        com_height = p.height.walking * standing_com_height
+        self.frequency = natural_frequency(com_height)
         self._standing_com_height, self._leg_length = standing_com_height, leg_length
         self._period, self._sole, self._ankle_height = period, sole, ankle_height
         self._passive_ankles = passive_ankles
-        self._footholds = FootholdPlanner(
-            sole,
-            parameters.footholds,
-            parameters.placement,
-            parameters.pacing,
-            parameters.height.walking * standing_com_height,
-        )
+        self._footholds = FootholdPlanner(sole, p.footholds, p.placement, p.pacing, com_height)
         self._phases = PhaseTransitions(
-            parameters, ankle_height, first_swing, ground, self._footholds, self.frequency, passive_ankles
+            p, ankle_height, first_swing, ground, self._footholds, self.frequency, passive_ankles
         )
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:

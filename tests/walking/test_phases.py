@@ -164,6 +164,13 @@ def test_a_push_in_standing_leads_to_a_careful_step_on_the_foot_nearer_to_the_dc
     assert len(caught.preview.footholds) > 0
 
 
+def test_in_the_weight_shift_the_body_may_lean_into_the_commanded_direction() -> None:
+    shifting = LEVEL.start(BODY, 0.0)._replace(phase=Phase.WEIGHT_SHIFT)
+    leaning = replace(BODY, com_velocity=0.8 + 0j)
+    assert LEVEL.advance(shifting, leaning, WALK).phase is Phase.WEIGHT_SHIFT
+    assert LEVEL.advance(shifting, leaning, Command(-0.3)).phase is Phase.DOUBLE_SUPPORT
+
+
 def test_on_irregular_ground_the_command_changes_at_touchdown() -> None:
     """The next footholds were planned for it."""
     curb, plane = (
