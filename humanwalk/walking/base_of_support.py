@@ -66,7 +66,7 @@ class BaseOfSupport:
         return ankle + self.center * cmath.exp(1j * heading)
 
     def outside(self, dcm: complex, stance: complex, heading: float, other: complex) -> complex:
-        """Displacement of a DCM from where both feet hold the body [m]; arguments as in `clamp`."""
+        """Displacement of a DCM from the base of support of both feet [m], 0 within it; arguments as in `clamp`."""
         found = dcm - self.clamp(dcm, stance, heading, other)
         return found if abs(found) > ROUNDING else 0.0
 

@@ -1,7 +1,7 @@
 """The phases of the walk: when one ends, and the state in which the next one begins.
 
-STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND. A body that two
-feet in standing do not hold goes on with DOUBLE_SUPPORT.
+STAND -> WEIGHT_SHIFT -> SINGLE_SUPPORT <-> DOUBLE_SUPPORT, and from SINGLE_SUPPORT back to STAND. If standing
+cannot hold the body, DOUBLE_SUPPORT follows.
 """
 
 import cmath
@@ -17,7 +17,7 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.foot_references import foot_behind
 from humanwalk.walking.footholds import Foothold
-from humanwalk.walking.lipm import PeriodicGait, divergent_component
+from humanwalk.walking.lipm import PeriodicGait
 from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -42,10 +42,9 @@ class PhaseTransitions:
         first_swing: Side,
         ground: Ground,
         footholds: FootholdPlanner,
-        frequency: float,
         passive_ankles: Collection[Side] = (),
     ) -> None:
-        self._passive_ankles, self._frequency = passive_ankles, frequency
+        self._passive_ankles = passive_ankles
         self._parameters, self._ankle_height = parameters, ankle_height
         self._first_swing, self._ground, self._footholds = first_swing, ground, footholds
 
@@ -69,16 +68,16 @@ class PhaseTransitions:
             ground=ground,
         )
 
-    def advance(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+    def advance(self, state: PlannerState, body: BodyState, command: Command, dcm: complex) -> PlannerState:
         """The state after the transition that is due, if any, with the stance foot where it is measured."""
-        return self._reanchor_airborne_stance(self._transition(state, body, command), body)
+        return self._reanchor_airborne_stance(self._transition(state, body, command, dcm), body)
 
-    def _transition(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
+    def _transition(self, state: PlannerState, body: BodyState, command: Command, dcm: complex) -> PlannerState:
         timing = state.timing
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
-        if not state.is_stepping and self._is_lost(state, body, command):
-            return self._catch(state, body, command)
+        if not state.is_stepping and self._is_lost(state, command, dcm):
+            return self._catch(state, command, dcm)
         if state.phase is Phase.STAND and is_moving:
             state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT:
@@ -92,7 +91,7 @@ class PhaseTransitions:
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed >= timing.double_support:
             return self._lift_off(state, body, command)
         if state.phase is Phase.SINGLE_SUPPORT and timing.has_landed(state.elapsed, body.foot(state.swing_side).force):
-            return self._touch_down(state, body, command, is_moving)
+            return self._touch_down(state, body, command, is_moving, dcm)
         return state
 
     def _lift_off(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
@@ -123,7 +122,9 @@ class PhaseTransitions:
             ),
         )
 
-    def _touch_down(self, state: PlannerState, body: BodyState, command: Command, is_moving: bool) -> PlannerState:
+    def _touch_down(
+        self, state: PlannerState, body: BodyState, command: Command, is_moving: bool, dcm: complex
+    ) -> PlannerState:
         """The swinging foot becomes the stance foot.
 
         Both feet are set to their measured positions, so that errors do not accumulate. Heading and turn rate are those
@@ -131,7 +132,7 @@ class PhaseTransitions:
         """
         right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
-        is_stepping = is_moving or not self._can_stand(right, left, state.heading, body)
+        is_stepping = is_moving or not self._can_stand(right, left, state.heading, dcm)
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
         caution = self._parameters.caution.after(state.caution, state.largest_error)
@@ -158,9 +159,8 @@ class PhaseTransitions:
         )
         return self._look_ahead(landed, command, state.preview.ahead) if is_stepping else landed
 
-    def _catch(self, state: PlannerState, body: BodyState, command: Command) -> PlannerState:
-        """A careful step from standing, on the foot that is nearer to the DCM across the heading."""
-        dcm = divergent_component(body.com, body.com_velocity, self._frequency)
+    def _catch(self, state: PlannerState, command: Command, dcm: complex) -> PlannerState:
+        """Begin a careful step from standing, on the foot with the smaller lateral distance to the DCM."""
         stance = min(SIDES, key=lambda side: abs(((dcm - state.foot(side).position) / state.direction).imag))
         careful = state._replace(
             phase=Phase.DOUBLE_SUPPORT,
@@ -171,22 +171,18 @@ class PhaseTransitions:
         )
         return self._look_ahead(careful, command)
 
-    def _is_lost(self, state: PlannerState, body: BodyState, command: Command) -> bool:
-        """Whether two feet do not hold the body; in the weight shift it may lean into the commanded direction."""
-        outside = self._outside(state.right, state.left, state.heading, body)
+    def _is_lost(self, state: PlannerState, command: Command, dcm: complex) -> bool:
+        """Whether standing cannot hold the body; in the weight shift it may lean in the commanded direction."""
+        support = self._parameters.support
+        outside = support.outside(dcm, state.right.position, state.heading, state.left.position)
         leans = (outside * (command.velocity * state.direction).conjugate()).real > 0.0
         return outside != 0.0 and not (state.phase is Phase.WEIGHT_SHIFT and leans)
 
-    def _can_stand(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> bool:
-        """Whether the body comes to rest on these feet, and they are side by side."""
+    def _can_stand(self, right: Foothold, left: Foothold, heading: float, dcm: complex) -> bool:
+        """Whether the feet are side by side, and their base of support contains the DCM."""
         p = self._parameters
         apart = (left.position - right.position) / cmath.exp(1j * heading) - 1j * p.placement.step_width
-        return abs(apart) <= p.stand_spread and self._outside(right, left, heading, body) == 0.0
-
-    def _outside(self, right: Foothold, left: Foothold, heading: float, body: BodyState) -> complex:
-        """Displacement of the DCM from the base of support of two feet [m]."""
-        dcm = divergent_component(body.com, body.com_velocity, self._frequency)
-        return self._parameters.support.outside(dcm, right.position, heading, left.position)
+        return abs(apart) <= p.stand_spread and p.support.outside(dcm, right.position, heading, left.position) == 0.0
 
     def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them."""

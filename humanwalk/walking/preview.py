@@ -85,7 +85,7 @@ class Preview(NamedTuple):
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
         ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
         durations: Those of the steps after this one, relative to this one; 1 on a plane.
-        command: The command for which the moves were planned: it changes at touchdown. None on a plane.
+        command: The command for which irregular footholds were planned; None on a plane, where the command may change.
     """
 
     footholds: tuple[Foothold, ...] = ()

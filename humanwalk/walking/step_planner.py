@@ -79,9 +79,7 @@ class StepPlanner:
         self._period, self._sole, self._ankle_height = period, sole, ankle_height
         self._passive_ankles = passive_ankles
         self._footholds = FootholdPlanner(sole, p.footholds, p.placement, p.pacing, com_height)
-        self._phases = PhaseTransitions(
-            p, ankle_height, first_swing, ground, self._footholds, self.frequency, passive_ankles
-        )
+        self._phases = PhaseTransitions(p, ankle_height, first_swing, ground, self._footholds, passive_ankles)
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
         """The state in standing; the commanded path begins along a heading [rad]."""
@@ -90,7 +88,7 @@ class StepPlanner:
     def update(self, state: PlannerState, body: BodyState, command: Command) -> tuple[PlannerState, WalkingReference]:
         """One control period: the next state, and the reference for the period."""
         dcm = divergent_component(body.com, body.com_velocity, self.frequency)
-        state = self._phases.advance(self._feel(state, body), body, command)
+        state = self._phases.advance(self._feel(state, body), body, command, dcm)
         plan = self._step if state.is_stepping else self._stand
         next_state, reference = plan(state, body, command, dcm)
         path = state.path.advanced(command, self._period)

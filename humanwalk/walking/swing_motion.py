@@ -72,7 +72,7 @@ def _with_foothold(
         footholds.nearest(state.ground, point, yaw, *stance, swing.foothold.face, goal.expected, is_final)
         for point in (goal.desired, goal.expected)
     )
-    # What balance requires now may be near a riser for a moment, and a foot that is late over it cannot catch up.
+    # The desired foothold varies within a step; near a riser it would delay the foot for the rest of the swing.
     feet = (state.old_foot, landing)
     added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary)
     position = swing.foothold.position + smoothing * (place.position - swing.foothold.position)

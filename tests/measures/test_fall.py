@@ -165,7 +165,6 @@ def test_a_real_walker_that_is_knocked_over() -> None:
     assert outcome.end == "fell"
     assert fall is not None
     assert fall["cause"] == "push"
-    # It steps, in vain.
     assert " from the left at 0.20 s; then the foot that landed at " in fall["description"]
     assert fall["time_s"] == pytest.approx(outcome.signals[TIME][-1].as_py())
     # The push is to the right.

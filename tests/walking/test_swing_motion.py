@@ -30,9 +30,9 @@ def foot(position: complex) -> FootState:
 
 def swing_over_the_beam() -> tuple[PlannerState, Swing]:
     body = BodyState(0j, 0j, 0.97, right=foot(-0.09j), left=foot(0.09j))
-    phases = PhaseTransitions(PARAMETERS, 0.07, "Right", BEAM, FOOTHOLDS, 3.2)
+    phases = PhaseTransitions(PARAMETERS, 0.07, "Right", BEAM, FOOTHOLDS)
     state = phases.start(body, 0.0)._replace(phase=Phase.WEIGHT_SHIFT, elapsed=PARAMETERS.timing.weight_shift)
-    state = phases.advance(state, body, WALK)
+    state = phases.advance(state, body, WALK, dcm=body.com)
     assert state.swing is not None
     return state, state.swing
 
