@@ -23,17 +23,31 @@ TOES_STRAIGHT = 0.4
 
 
 def rollover(
-    state: PlannerState, start: Foothold, goal: Foothold, command: Command, parameters: StepPlannerParameters
+    state: PlannerState,
+    start: Foothold,
+    goal: Foothold,
+    raised: float,
+    command: Command,
+    parameters: StepPlannerParameters,
 ) -> Rollover:
     """How a foot leaves the ground in the step from `start` to `goal`.
 
     Its speed is the commanded one, or less if the step is short for an ordinary one, or backward. A foot that is steep
-    when it leaves the ground below the body catches the ground with its toes. In a step up or down it is large: the
-    ankle of a foot that rises beside a riser is far behind the body, and that of one below which the body sinks is,
-    too; it does not bend so far that the foot could be level.
+    when it leaves the ground below the body catches the ground with its toes. In a step up or down it is large, and so
+    it is before a swing that raises the foot: the ankle of a foot that rises behind the body does not bend so far that
+    the foot could be level, nor does that of a foot below which the body sinks.
+
+    Args:
+        state: State of the planner.
+        start: Where the foot stands.
+        goal: Where the other foot lands, or has landed.
+        raised: Height by which the foot rises in its next swing [m].
+        command: The command.
+        parameters: Parameters of the planner.
     """
     length = ((goal.position - start.position) / state.direction).real
-    climbing = 1.0 - parameters.swing.rolling_share(start.step_to(goal))
+    swing = parameters.swing
+    climbing = max(1.0 - swing.rolling_share(start.step_to(goal)), swing.raising_share(raised))
     duration = parameters.timing.at_speed(command.forward).step
     ordinary = min(command.forward, SHORT_STEP * length / duration)
     speed = (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
@@ -60,7 +74,8 @@ def stance_rollover(
 
     The time is negative before heel-off; minus infinity for a heel that does not rise.
     """
-    found = rollover(state, state.stance_foot, swing.foothold, command, parameters)
+    raised = state.preview.raised[1]
+    found = rollover(state, state.stance_foot, swing.foothold, raised, command, parameters)
     since = state.elapsed - (state.timing.step - found.lead)
     return found, since if parameters.rockers.heel_rises(found.speed) else -math.inf
 
@@ -86,7 +101,8 @@ def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerPa
     """Reference of the foot that leaves the ground at the end of double support."""
     timing, rockers = state.timing, parameters.rockers
     load, R_WS = max(1.0 - state.elapsed / timing.double_support, 0.0), state.old_foot.R_WS
-    found = rollover(state, state.old_foot, state.stance_foot, command, parameters)
+    raised = state.preview.raised[0]
+    found = rollover(state, state.old_foot, state.stance_foot, raised, command, parameters)
     if not rockers.heel_rises(found.speed):
         return FootReference(FootTask.FLAT, load, state.old_heading, R_WS)
     # After an early touchdown of the other foot, a heel-off that has begun goes on without a jump.

@@ -17,8 +17,8 @@ class Rollover(NamedTuple):
     Attributes:
         speed: Forward speed [m/s]; determines the pitch at toe-off.
         lead: Time from heel-off to touchdown of the other foot [s].
-        climbing: How much of a step up or down the step is, 0 to 1. In such a step the toes stay on the ground, because
-            their tips may be at an edge.
+        climbing: How much of a step up or down the step is, or the next swing of the foot, 0 to 1. In such a step the
+            toes stay on the ground, because their tips may be at an edge.
     """
 
     speed: float

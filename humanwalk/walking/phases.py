@@ -191,9 +191,14 @@ class PhaseTransitions:
         if careful is not state:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
-        factor, *others = (self._duration_factor(state, *feet[k : k + 3 : 2]) for k in range(STEPS))
-        kept = command if any(preview.moves) else None
-        preview = preview._replace(durations=tuple(other / factor for other in others), command=kept)
+        swings = [feet[k : k + 3 : 2] for k in range(STEPS)]
+        factor, *others = (self._duration_factor(state, *swing) for swing in swings)
+        behind, stance = (self._raised(state, *swing) for swing in swings[:2])
+        preview = preview._replace(
+            durations=tuple(other / factor for other in others),
+            raised=(behind, stance),
+            command=command if any(preview.moves) else None,
+        )
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
         # A step that takes longer is not ahead by what the gait covers in that time.
@@ -213,6 +218,10 @@ class PhaseTransitions:
         """Duration of the step of a foot to its next foothold, relative to the ordinary one."""
         lift = self._added_lift(state, start, goal)
         return self._parameters.pacing.duration_factor(goal.ground - start.ground, lift)
+
+    def _raised(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
+        """Height by which a foot rises in its next swing above the plane on which it stands [m]."""
+        return max(start.step_to(goal), 0.0) + self._added_lift(state, start, goal)
 
     def _cautious(self, state: PlannerState, command: Command, preview: Preview) -> PlannerState:
         """The state with the caution that the next footholds require, if that is more, and with its timing."""

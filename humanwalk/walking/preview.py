@@ -85,6 +85,8 @@ class Preview(NamedTuple):
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
         ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
         durations: Those of the steps after this one, relative to this one; 1 on a plane.
+        raised: Heights by which the foot behind and the stance foot rise in their next swings, to the foothold and over
+            what they clear [m]; 0 on a plane.
         command: The command for which irregular footholds were planned; None on a plane, where the command may change.
     """
 
@@ -93,6 +95,7 @@ class Preview(NamedTuple):
     pace: float = 1.0
     ahead: float = 0.0
     durations: tuple[float, ...] = (1.0,) * (STEPS - 1)
+    raised: tuple[float, float] = (0.0, 0.0)
     command: Command | None = None
 
     @property

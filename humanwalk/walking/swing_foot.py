@@ -79,6 +79,13 @@ class SwingParameters:
         """How much of a step down a step is, 0 to 1; `rise` as in `rolling_share`."""
         return 1.0 - self.rolling_share(min(rise, 0.0))
 
+    def raising_share(self, height: float) -> float:
+        """How much of a step up a swing is that raises the foot by a height [m]: 0 to half of `flat_rise`, then to 1.
+
+        With less than half, feet leave stepping stones of unequal heights too steeply (docs/balance.md).
+        """
+        return clip(2.0 * height / self.flat_rise - 1.0, 0.0, 1.0)
+
     def touchdown_pitch(self, speed: float) -> float:
         """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
         return min(self.toe_up * max(speed, 0.0), MAX_TOE_UP)

@@ -103,7 +103,7 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
     forward: float, length: float
 ) -> None:
     goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
-    speed = rollover(state_at(0.0), OLD, goal, Command(forward), PARAMETERS).speed
+    speed = rollover(state_at(0.0), OLD, goal, 0.0, Command(forward), PARAMETERS).speed
     assert speed <= forward
     if length <= 0.0:
         assert speed <= 0.0
@@ -116,11 +116,39 @@ def test_the_rollover_after_an_ordinary_step_is_the_same_before_a_careful_one(fo
     goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
     ordinary, careful = (
         rollover(
-            state_at(0.0)._replace(timing=TIMING.at_speed(forward, caution)), OLD, goal, Command(forward), PARAMETERS
+            state_at(0.0)._replace(timing=TIMING.at_speed(forward, caution)),
+            OLD,
+            goal,
+            0.0,
+            Command(forward),
+            PARAMETERS,
         )
         for caution in (0.0, 1.0)
     )
     assert careful == ordinary
+
+
+@given(st.floats(0.3, 1.5), st.floats(-1.0, 1.5), st.floats(0.0, 0.4))
+def test_a_foot_leaves_the_ground_the_steeper_the_more_it_is_raised_next(
+    forward: float, length: float, raised: float
+) -> None:
+    goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
+    level, higher, highest = (
+        rollover(state_at(0.0), OLD, goal, height, Command(forward), PARAMETERS)
+        for height in (0.0, raised, PARAMETERS.swing.flat_rise)
+    )
+    assert level.speed <= higher.speed <= highest.speed == max(level.speed, ROCKERS.full_pitch_speed)
+    assert (level.climbing, highest.climbing) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_each_foot_leaves_the_ground_as_its_own_swing_requires(side: int) -> None:
+    raised = (0.3, 0.0) if side == 0 else (0.0, 0.3)
+    level = state_at(TIMING.double_support - 1e-9), state_at(TIMING.step)
+    high = [state._replace(preview=state.preview._replace(raised=raised)) for state in level]
+    behind = [foot_behind(state, WALK, PARAMETERS).pitch.value for state in (level[0], high[0])]
+    stance = [stance_foot(state, swing_to(NEXT), WALK, PARAMETERS).pitch.value for state in (level[1], high[1])]
+    assert [after > before for before, after in (behind, stance)] == [side == 0, side == 1]
 
 
 @given(st.floats(-0.2, 0.2))

@@ -9,7 +9,7 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain import Plane
 from humanwalk.terrain.course import Course
 from humanwalk.terrain.piece import Piece
-from humanwalk.terrain.steps import Curb, Stairs
+from humanwalk.terrain.steps import Curb, Obstacle, Stairs
 from humanwalk.walking.command import Command
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import divergent_component
@@ -182,6 +182,15 @@ def test_only_a_preview_of_irregular_footholds_keeps_the_command_for_which_it_wa
     )
     assert curb.preview.command == WALK
     assert plane.preview.command is None
+
+
+@pytest.mark.parametrize("piece", [Curb(height=0.15), Stairs(rise=0.15, tread=0.3), Obstacle(height=0.15, length=0.3)])
+def test_a_preview_knows_which_foot_is_raised_next(piece: Piece) -> None:
+    phases = on_course(piece)
+    far = advance(phases, in_single_support(1.01, phases=phases), replace(BODY, right=foot(-0.6 - 0.1j)), WALK)
+    near = advance(phases, in_single_support(1.01, phases=phases), landed_at(0.3 - 0.1j), WALK)
+    assert far.preview.raised == (0.0, 0.0)
+    assert max(near.preview.raised) > 0.12
 
 
 @pytest.mark.parametrize("force, is_moved", [(30.0, True), (120.0, False)])
