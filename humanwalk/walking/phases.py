@@ -191,12 +191,14 @@ class PhaseTransitions:
         if careful is not state:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
-        swings = [feet[k : k + 3 : 2] for k in range(STEPS)]
-        factor, *others = (self._duration_factor(state, *swing) for swing in swings)
-        behind, stance = (self._raised(state, *swing) for swing in swings[:2])
+        swings = [(feet[k], feet[k + 2]) for k in range(STEPS)]
+        lifts = [self._added_lift(state, *swing) for swing in swings]
+        rises = [goal.ground - start.ground for start, goal in swings]
+        factor, *others = map(self._parameters.pacing.duration_factor, rises, lifts)
+        raised = [max(start.step_to(goal), 0.0) + lift for (start, goal), lift in zip(swings, lifts, strict=True)]
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
-            raised=(behind, stance),
+            raised=(raised[0], raised[1]),
             command=command if any(preview.moves) else None,
         )
         if factor == 1.0 and preview.pace == 1.0:
@@ -213,15 +215,6 @@ class PhaseTransitions:
         other = desired_gait(slower, command.at_pace(pace), self._parameters)
         moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
         return slower._replace(preview=moved)
-
-    def _duration_factor(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
-        """Duration of the step of a foot to its next foothold, relative to the ordinary one."""
-        lift = self._added_lift(state, start, goal)
-        return self._parameters.pacing.duration_factor(goal.ground - start.ground, lift)
-
-    def _raised(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
-        """Height by which a foot rises in its next swing above the plane on which it stands [m]."""
-        return max(start.step_to(goal), 0.0) + self._added_lift(state, start, goal)
 
     def _cautious(self, state: PlannerState, command: Command, preview: Preview) -> PlannerState:
         """The state with the caution that the next footholds require, if that is more, and with its timing."""
