@@ -92,8 +92,9 @@ class Changes:
         str | None,
         _option(
             metavar="TERRAIN",
-            help='Ground, like "slope 3 deg" or "plane slope 3 deg, friction coefficient 0.5". '
-            "Grammar: [TERRAIN] [FIELD VALUE [UNIT]], ...",
+            help='Ground, like "plane slope 3 deg, friction coefficient 0.5", or pieces of a course, like '
+            '"stairs down 17 cm, number 8 then obstacle 20 cm". Grammar: '
+            "[TERRAIN] [FIELD VALUE [UNIT]], ..., or PIECE [up | down] [[FIELD] VALUE [UNIT], ...] [then PIECE ...]",
         ),
     ] = None
 

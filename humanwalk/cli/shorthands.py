@@ -1,6 +1,7 @@
 """Shorthands of the command line for fields of a scenario: text in, overrides by field name out."""
 
 import dataclasses
+import inspect
 import json
 import math
 import re
@@ -11,14 +12,16 @@ from humanwalk.body.devices import DEVICES
 from humanwalk.body.impairments import IMPAIRMENTS
 from humanwalk.body.loads import LOADS
 from humanwalk.quantity import ParameterError, did_you_mean, printable
-from humanwalk.terrain import TERRAINS
+from humanwalk.terrain import PIECES, TERRAINS
 from humanwalk.walking.push import Push
 
 PUSH_GRAMMAR = "IMPULSE N s at TIME s from SIDE [for DURATION s] [on BODY]"
 PUSH_EXAMPLE = "60 N s at 8 s from behind"
 SIDES_GRAMMAR = "SIDE is front, behind, left, right, or an angle like 45 deg: 0 is the front, 90 the left"
-TERRAIN_GRAMMAR = "[TERRAIN] [FIELD VALUE [UNIT]], ..."
-TERRAIN_EXAMPLE = "plane slope 3 deg, friction coefficient 0.5"
+TERRAIN_GRAMMAR = (
+    "[TERRAIN] [FIELD VALUE [UNIT]], ..., or PIECE [up | down] [[FIELD] VALUE [UNIT], ...] [then PIECE ...]"
+)
+TERRAIN_EXAMPLES = "plane slope 3 deg, friction coefficient 0.5", "stairs down 17 cm, number 8 then obstacle 20 cm"
 
 LOAD_GRAMMAR = "LOAD MASS kg [in the right hand | in the left hand] [unknown]"
 LOAD_EXAMPLE = "backpack 10 kg"
@@ -45,9 +48,21 @@ LOAD = re.compile(
 )
 FIELD = re.compile(rf"(?P<name>[A-Za-z_][A-Za-z_ ]*?)\s+(?:(?P<number>{NUMBER})\s*(?P<unit>\S*)|(?P<word>\S+))")
 
+THEN = re.compile(r"\s+then\s+")
+
 PART = re.compile(
     rf"(?P<name>(?:[A-Za-z_][A-Za-z_ ]*?(?=\s))?)\s*(?:(?P<number>{NUMBER})\s*(?P<unit>[^\d]*)|(?P<word>[A-Za-z_]\w*))"
 )
+
+WORDS = {
+    "right": ("side", "Right"),
+    "left": ("side", "Left"),
+    "both": ("side", "Both"),
+    "up": ("direction", "up"),
+    "down": ("direction", "down"),
+    "unknown": ("known", False),
+}
+"""Words of a part that say a field without naming it: the field, and its value."""
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.radians(1.0)},
@@ -114,7 +129,7 @@ def impairment_overrides(texts: Sequence[str]) -> dict[str, str]:
     Raises:
         ParameterError: a text is no impairment.
     """
-    return {"subject.impairments": json.dumps([_part(text, "--impairment", IMPAIRMENTS) for text in texts])}
+    return {"subject.impairments": json.dumps([_subject_part(text, "impairment", IMPAIRMENTS) for text in texts])}
 
 
 def device_overrides(texts: Sequence[str]) -> dict[str, str]:
@@ -123,34 +138,46 @@ def device_overrides(texts: Sequence[str]) -> dict[str, str]:
     Raises:
         ParameterError: a text is no device.
     """
-    return {"subject.devices": json.dumps([_part(text, "--device", DEVICES) for text in texts])}
+    return {"subject.devices": json.dumps([_subject_part(text, "device", DEVICES) for text in texts])}
 
 
-def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, dict[str, Any]]:
-    """An impairment or device by its text; a value without a field is that of the kind's first quantity."""
+def _subject_part(text: str, name: str, kinds: Mapping[str, type[Any]]) -> dict[str, dict[str, Any]]:
+    """An impairment or device by its text."""
+    noun = name.upper()
+    return _part(text, f"--{name}", kinds, noun, PART_GRAMMAR.format(noun))
+
+
+def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, grammar: str) -> dict[str, dict[str, Any]]:
+    """One of several kinds by its text; a value without a field is that of the first quantity that the kind declares.
+
+    Args:
+        text: Of the part.
+        option: For messages.
+        kinds: By their tags.
+        noun: What the grammar calls a kind.
+        grammar: How a text is written.
+    """
     words = text.strip().replace("_", " ")
     tag = next((tag for tag in kinds if words.startswith(tag.replace("_", " "))), "")
-    grammar = PART_GRAMMAR.format(option.strip("-").upper())
-    end = f"allowed: {grammar} with {option.strip('-').upper()} one of {', '.join(kinds)}"
+    end = f"allowed: {grammar} with {noun} one of {', '.join(kinds)}"
     if not tag:
         near = did_you_mean("_".join(words.split()[:2]), tuple(kinds))
         raise ParameterError(f"{option} {printable(text)}: no such kind; {end}; write one of them{near}")
     known = _fields(kinds[tag])
-    first = next(name for name, field in known.items() if "unit" in field.metadata)
+    own = [name for name in inspect.get_annotations(kinds[tag]) if name in known]
+    first = next(name for name in (*own, *known) if "unit" in known[name].metadata)
     fields: dict[str, Any] = {}
-    rest = words[len(tag) :].split()
-    for word in [word for word in rest if word in ("right", "left", "both")]:
-        fields["side"] = word.capitalize()
-        rest.remove(word)
-    if rest and rest[-1] == "unknown" and "known" in known:
-        fields["known"] = False
-        rest.pop()
-    for item in " ".join(rest).split(",") if rest else ():
-        found = PART.fullmatch(item.strip())
+    for item in words[len(tag) :].split(","):
+        said = dict(WORDS[word] for word in item.split() if word in WORDS)
+        fields |= said
+        rest = " ".join(word for word in item.split() if word not in WORDS)
+        if not rest or rest in said:
+            continue
+        found = PART.fullmatch(rest)
         name = "_".join(found["name"].split()) or first if found else ""
         if not found or name not in known:
             raise ParameterError(
-                f"{option} {printable(text)}: {printable(item.strip())} is not FIELD VALUE of {tag}, which has "
+                f"{option} {printable(text)}: {printable(rest)} is not FIELD VALUE of {tag}, which has "
                 f"{', '.join(known)}; {end}; correct it{did_you_mean(name, tuple(known))}"
             )
         unit = known[name].metadata.get("unit", "")
@@ -158,7 +185,8 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, d
         if found["word"]:
             fields[name] = found["word"]
         elif written in factors:
-            fields[name] = float(found["number"]) * factors[written]
+            value = float(found["number"]) * factors[written]
+            fields[name] = int(value) if not unit and value.is_integer() else value
         else:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
@@ -168,16 +196,20 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]]) -> dict[str, d
 
 
 def terrain_overrides(text: str) -> dict[str, str]:
-    """The terrain of a scenario, like "slope 3 deg" or "plane slope 3 deg, friction coefficient 0.5".
+    """The terrain of a scenario, like "slope 3 deg", or the pieces of a course, like "stairs 17 cm then obstacle".
 
     Raises:
-        ParameterError: no such terrain, field or unit.
+        ParameterError: no such terrain, piece, field or unit.
     """
+    pieces = THEN.split(text.strip())
+    if len(pieces) > 1 or _begins_with_piece(text):
+        parts = [_part(piece, "--terrain", PIECES, "PIECE", TERRAIN_GRAMMAR) for piece in pieces]
+        return {"terrain": json.dumps({"course": {"pieces": parts}})}
     first, *others = text.split(",")
     tag, _, after_tag = first.strip().partition(" ")
     if tag not in TERRAINS:
         if not after_tag:
-            raise _terrain_error(text, f"no such terrain{did_you_mean(tag, tuple(TERRAINS))}")
+            raise _terrain_error(text, f"no such terrain{did_you_mean(tag, (*TERRAINS, *PIECES))}")
         tag, after_tag = "", first
     fields = dict(_field(item, text) for item in (after_tag, *others) if item.strip())
     tag = tag or _terrain_with(fields, text)
@@ -189,6 +221,12 @@ def terrain_overrides(text: str) -> dict[str, str]:
             )
     values = {name: _in_unit(*written, known[name].metadata.get("unit", ""), text) for name, written in fields.items()}
     return {"terrain": json.dumps({tag: values})}
+
+
+def _begins_with_piece(text: str) -> bool:
+    """Whether a terrain is one piece of a course; a slope alone is that of a plane."""
+    words = text.strip().replace("_", " ")
+    return any(words.startswith(tag.replace("_", " ")) for tag in PIECES if tag not in _fields(TERRAINS["plane"]))
 
 
 def _field(item: str, text: str) -> tuple[str, tuple[Any, str]]:
@@ -230,5 +268,5 @@ def _in_unit(value: Any, written: str, unit: str, text: str) -> Any:
 def _terrain_error(text: str, problem: str) -> ParameterError:
     return ParameterError(
         f"--terrain {printable(text)}: {problem}; allowed: {TERRAIN_GRAMMAR} with TERRAIN one of "
-        f'{", ".join(TERRAINS)}; write it like "{TERRAIN_EXAMPLE}"'
+        f'{", ".join(TERRAINS)} and PIECE one of {", ".join(PIECES)}; write it like "{TERRAIN_EXAMPLES[0]}"'
     )

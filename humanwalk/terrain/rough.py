@@ -16,14 +16,14 @@ class Rough(Piece):
 
     color: ClassVar[Color] = (0.66, 0.62, 0.52)
 
+    height: float = quantity(0.02, "m", 0.0, 0.4)
+    """Heights are uniform from -height to height, drawn from the seed."""
+
     length: float = quantity(4.0, "m", 0.1, 1000.0)
     """Its length."""
 
     cell_size: float = quantity(0.4, "m", 0.05, 10.0)
     """Edges of a box on the level plane; adjusted so that whole boxes fit."""
-
-    height: float = quantity(0.02, "m", 0.0, 0.4)
-    """Heights are uniform from -height to height, drawn from the seed."""
 
     seed: int = quantity(0, "", 0, 2**32 - 1)
     """Of the heights."""

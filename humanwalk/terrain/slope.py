@@ -26,11 +26,11 @@ class Slope(Piece):
 
     color: ClassVar[Color] = (0.82, 0.78, 0.66)
 
-    length: float = quantity(3.0, "m", 0.1, 1000.0)
-    """Its length on the level plane."""
-
     slope: float = quantity(0.0873, "rad", -0.5, 0.5)
     """Inclination along x, positive upward: 5 degrees are 0.0873 rad."""
+
+    length: float = quantity(3.0, "m", 0.1, 1000.0)
+    """Its length on the level plane."""
 
     cross_slope: float = quantity(0.0, "rad", -0.5, 0.5)
     """Inclination along y, positive upward to the left. The middle line is level with the neighboring pieces."""

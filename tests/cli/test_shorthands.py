@@ -21,7 +21,10 @@ from humanwalk.cli.main import app
 from humanwalk.cli.shorthands import BEARINGS, push_of, push_overrides, terrain_overrides
 from humanwalk.quantity import ParameterError, quantity
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
-from humanwalk.terrain import TERRAINS, Plane
+from humanwalk.terrain import PIECES, TERRAINS, Course, Piece, Plane
+from humanwalk.terrain.rough import Rough
+from humanwalk.terrain.slope import Flat, Slope
+from humanwalk.terrain.steps import Curb, Obstacle, Stairs
 from humanwalk.walking.push import Push
 
 positive = st.floats(0.001, 1000.0, allow_nan=False)
@@ -116,6 +119,45 @@ def test_another_terrain_is_refused_with_the_grammar(text: str, problem: str) ->
     with pytest.raises(ParameterError, match=problem) as refusal:
         terrain_overrides(text)
     assert shorthands.TERRAIN_GRAMMAR in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "pieces"),
+    [
+        ("stairs", (Stairs(),)),
+        ("stairs down 17 cm, number 8", (Stairs(rise=0.17, number=8, direction="down"),)),
+        ("stairs rise 17 cm, direction down", (Stairs(rise=0.17, direction="down"),)),
+        ("rough 3 cm, seed 5 then obstacle 20 cm", (Rough(height=0.03, seed=5), Obstacle(height=0.2))),
+        ("slope 3 deg, length 4 m then flat", (Slope(slope=math.radians(3.0), length=4.0), Flat())),
+        (
+            "curb 12cm then flat 2 m  then curb down 12 cm",
+            (Curb(height=0.12), Flat(), Curb(height=0.12, direction="down")),
+        ),
+    ],
+)
+def test_a_course_is_read_from_its_pieces(text: str, pieces: tuple[Piece, ...]) -> None:
+    assert changed(terrain=text).terrain == Course(pieces=pieces)
+
+
+@pytest.mark.parametrize("tag", sorted(PIECES.keys() - {"slope", "height_map"}))
+def test_every_piece_can_be_written(tag: str) -> None:
+    assert changed(terrain=tag.replace("_", " ")).terrain == Course(pieces=(PIECES[tag](),))
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("stairs then stares", "no such kind; allowed: .* did you mean stairs"),
+        ("obstacle high 20 cm", "high 20 cm is not FIELD VALUE of obstacle, which has .*height"),
+        ("curb 12 furlongs", "furlongs is no unit of height; allowed: m or cm or mm"),
+        ("obstacle down", "terrain.course.pieces.0.obstacle.direction: no such field"),
+        ("curb -12 cm", r"terrain.course.pieces.0.curb.height: -0.12 is out of range"),
+        ("stairs number 2.5", "terrain.course.pieces.0.stairs.number"),
+    ],
+)
+def test_another_piece_is_refused(text: str, problem: str) -> None:
+    with pytest.raises(ParameterError, match=problem):
+        changed(terrain=text)
 
 
 def test_a_field_of_several_terrains_needs_the_terrain(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -259,7 +301,7 @@ def test_walk_and_diagram_take_the_same_changes() -> None:
         shorthands.SIDES_GRAMMAR,
         shorthands.PUSH_EXAMPLE,
         shorthands.TERRAIN_GRAMMAR,
-        shorthands.TERRAIN_EXAMPLE,
+        *shorthands.TERRAIN_EXAMPLES,
         shorthands.LOAD_GRAMMAR,
         shorthands.LOAD_EXAMPLE,
     ],
