@@ -29,10 +29,10 @@ DIRECTIONS = st.sampled_from(["up", "down"])
 FRICTION = st.floats(0.05, 1.3)
 PIECE = st.one_of(
     st.builds(Flat, FRICTION, length=st.floats(0.1, 5.0)),
-    st.builds(Slope, FRICTION, st.floats(0.1, 5.0), st.floats(-0.5, 0.5), st.floats(-0.3, 0.3)),
+    st.builds(Slope, FRICTION, st.floats(-0.5, 0.5), st.floats(0.1, 5.0), st.floats(-0.3, 0.3)),
     st.builds(Stairs, FRICTION, DIRECTIONS, st.floats(0.01, 0.4), st.floats(0.1, 0.6), st.integers(1, 8)),
     st.builds(Curb, FRICTION, DIRECTIONS, st.floats(0.01, 0.4), st.floats(0.1, 3.0)),
-    st.builds(Rough, FRICTION, st.floats(0.1, 3.0), st.floats(0.2, 2.0), st.floats(0.0, 0.4), SEEDS),
+    st.builds(Rough, FRICTION, st.floats(0.0, 0.4), st.floats(0.1, 3.0), st.floats(0.2, 2.0), SEEDS),
     st.builds(Obstacle, FRICTION, st.floats(0.01, 0.5), st.floats(0.02, 0.5), st.floats(0.6, 3.0)),
     st.builds(
         Stones,
