@@ -22,7 +22,7 @@ from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import STEPS, FootholdPlanner, Preview
-from humanwalk.walking.swing_clearance import TIMES, clearance
+from humanwalk.walking.swing_clearance import TIMES, Clearance, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.touch import STANDING_TIME, first_touches
 from humanwalk.walking.walking_reference import BodyState, Phase
@@ -192,10 +192,14 @@ class PhaseTransitions:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
         swings = [(feet[k], feet[k + 2]) for k in range(STEPS)]
-        lifts = [self._added_lift(state, *swing) for swing in swings]
-        rises = [goal.ground - start.ground for start, goal in swings]
-        factor, *others = map(self._parameters.pacing.duration_factor, rises, lifts)
-        raised = [max(start.step_to(goal), 0.0) + lift for (start, goal), lift in zip(swings, lifts, strict=True)]
+        law = self._parameters.clearance
+        factors, raised = [], []
+        for start, goal in swings:
+            added = self._clearance(state, start, goal)
+            lift, rise = added.highest(0.0, law.margin), goal.ground - start.ground
+            factors.append(self._parameters.pacing.duration_factor(rise, lift))
+            raised.append(added.highest(start.step_to(goal), law.margin))
+        factor, *others = factors
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
             raised=(raised[0], raised[1]),
@@ -238,9 +242,12 @@ class PhaseTransitions:
 
     def _added_lift(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
         """Height [m] by which a foot is lifted higher than on a plane, without the margin."""
+        return self._clearance(state, start, goal).highest(0.0, self._parameters.clearance.margin)
+
+    def _clearance(self, state: PlannerState, start: Foothold, goal: Foothold) -> Clearance:
+        """What the next swing of a foot adds to that on a plane."""
         law = self._parameters.clearance
-        added = clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
-        return max(max(added.lift) - law.margin, 0.0)
+        return clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""

@@ -52,6 +52,17 @@ def test_stairs_raise_and_lower_the_body_by_their_height(direction: str, sign: f
     assert min(abs(sole - sign * 4 * 0.185) for sole in soles) < 0.05
 
 
+@pytest.mark.parametrize("run_up", [0.5, 0.7])
+def test_it_steps_over_a_beam_that_begins_in_any_phase_of_a_step(run_up: float) -> None:
+    """The trailing foot, which rises behind the hip, leaves the ground steeply: the ankle bends by 35 degrees only."""
+    beam = f"{{course: {{run_up: {run_up}, pieces: [{{obstacle: {{height: 0.2, length: 0.6}}}}]}}}}"
+    forward = {"controller.balanced.command.points.0.forward": "0.5"}
+    outcome = simulate(load_scenario("walk", {"duration": "7", "terrain": beam, **forward}))
+    assert outcome.end == "completed"
+    heels = [outcome.signals[f"{side}_sole.x_m"].to_numpy()[-1] for side in ("right", "left")]
+    assert min(heels) > run_up + 0.35
+
+
 @pytest.mark.parametrize("speed, seed", [(0.55, 1), (0.45, 2)])
 def test_it_walks_down_stairs_that_begin_right_at_the_start(speed: float, seed: int) -> None:
     """The plan knows that the step over the edge takes longer than the one before it."""
