@@ -22,7 +22,7 @@ from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import STEPS, FootholdPlanner, Preview
-from humanwalk.walking.swing_clearance import TIMES, Clearance, clearance
+from humanwalk.walking.swing_clearance import TIMES, clearance
 from humanwalk.walking.swing_foot import SwingProfile
 from humanwalk.walking.touch import STANDING_TIME, first_touches
 from humanwalk.walking.walking_reference import BodyState, Phase
@@ -192,14 +192,11 @@ class PhaseTransitions:
             state, (gait, preview) = careful, self._preview(careful, command, ahead)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
         swings = [(feet[k], feet[k + 2]) for k in range(STEPS)]
-        law = self._parameters.clearance
-        factors, raised = [], []
-        for start, goal in swings:
-            added = self._clearance(state, start, goal)
-            lift, rise = added.highest(0.0, law.margin), goal.ground - start.ground
-            factors.append(self._parameters.pacing.duration_factor(rise, lift))
-            raised.append(added.highest(start.step_to(goal), law.margin))
-        factor, *others = factors
+        rises = [goal.ground - start.ground for start, goal in swings]
+        lifts = [self._added_lift(state, *swing) for swing in swings]
+        factor, *others = map(self._parameters.pacing.duration_factor, rises, lifts)
+        steps = [start.step_to(goal) for start, goal in swings]
+        raised = [self._raised(step, lift) for step, lift in zip(steps, lifts, strict=True)]
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
             raised=(raised[0], raised[1]),
@@ -242,12 +239,13 @@ class PhaseTransitions:
 
     def _added_lift(self, state: PlannerState, start: Foothold, goal: Foothold) -> float:
         """Height [m] by which a foot is lifted higher than on a plane, without the margin."""
-        return self._clearance(state, start, goal).highest(0.0, self._parameters.clearance.margin)
-
-    def _clearance(self, state: PlannerState, start: Foothold, goal: Foothold) -> Clearance:
-        """What the next swing of a foot adds to that on a plane."""
         law = self._parameters.clearance
-        return clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
+        added = clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
+        return max(max(added.lift) - law.margin, 0.0)
+
+    def _raised(self, step: float, lift: float) -> float:
+        """Height by which a foot rises [m], by its step up and by the lift over what is in its way; 0 in a step down."""
+        return (1.0 - self._parameters.swing.descent_share(step)) * (max(step, 0.0) + lift)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""

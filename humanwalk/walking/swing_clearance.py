@@ -103,14 +103,6 @@ class Clearance(NamedTuple):
         near = quintic_blend(np.clip(np.minimum(times, 1.0 - times) / RAISING, 0.0, 1.0))[0]
         return self._replace(lift=tuple((np.array(self.lift) + height * near).tolist()))
 
-    def highest(self, rise: float, margin: float) -> float:
-        """Greatest height above the start [m] that a swing has to reach, where the ground rises by `rise` [m].
-
-        The margin [m] of the lift does not count.
-        """
-        ground = quintic_blend(np.linspace(0.0, 1.0, INTERVALS + 1)[1:])[0] * rise
-        return float(max((np.maximum(np.append(self.lift, 0.0) - margin, 0.0) + ground).max(), 0.0))
-
     def time_to_depart(self, progress: float, remaining: float, hold: float) -> float:
         """Time until the foot departs, at a progress with a remaining time to touchdown; at least `hold` [s, all]."""
         return max((self.depart - progress) / (1.0 - progress) * remaining, hold)

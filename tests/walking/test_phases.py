@@ -193,6 +193,13 @@ def test_a_preview_knows_which_foot_is_raised_next(piece: Piece) -> None:
     assert max(near.preview.raised) > 0.12
 
 
+def test_a_foot_is_not_raised_in_a_step_down() -> None:
+    phases = on_course(Stairs(rise=0.15, tread=0.3, direction="down"))
+    state = advance(phases, in_single_support(1.01, phases=phases), landed_at(0.3 - 0.1j), WALK)
+    assert min(foothold.ground for foothold in state.preview.footholds[:2]) < -0.1
+    assert state.preview.raised == (0.0, 0.0)
+
+
 @pytest.mark.parametrize("force, is_moved", [(30.0, True), (120.0, False)])
 def test_a_stance_foot_without_load_after_touchdown_stands_where_it_is_measured(force: float, is_moved: bool) -> None:
     state = advance(PHASES, in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)._replace(elapsed=0.02)

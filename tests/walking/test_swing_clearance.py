@@ -129,20 +129,3 @@ def test_ground_that_may_stand_out_unseen_lifts_the_foot_on_its_way_and_not_at_i
     assert added.at(0.5).value == pytest.approx(unseen)
     assert (added.at(0.0).value, added.at(1.0).value) == pytest.approx((0.0, 0.0), abs=1e-12)
     assert all(0.0 <= lift <= unseen + 1e-12 for lift in added.lift)
-
-
-@given(st.floats(-0.4, 0.4), st.floats(0.0, 0.1))
-def test_a_swing_rises_to_its_foothold_and_over_what_it_clears(rise: float, margin: float) -> None:
-    ground = Clearance().highest(rise, margin)
-    assert ground == pytest.approx(max(rise, 0.0))
-    lift = Clearance(LIFT).highest(0.0, margin)
-    assert lift == pytest.approx(max(max(LIFT) - margin, 0.0))
-    assert ground <= Clearance(LIFT).highest(rise, margin) <= max(ground, ground + lift) + 1e-12
-
-
-def test_a_foot_on_its_way_down_stairs_hardly_rises() -> None:
-    stairs = Course(pieces=(Stairs(rise=0.185, tread=0.28, direction="down"),), run_up=0.5)
-    feet = Foothold.on(stairs, 0.35), Foothold.on(stairs, 0.9)
-    added, rise = clearance(stairs, *feet, 0.0, SOLE, LAW), feet[1].ground - feet[0].ground
-    assert added.highest(0.0, LAW.margin) > 0.08
-    assert added.highest(rise, LAW.margin) < 0.03
