@@ -244,7 +244,7 @@ class PhaseTransitions:
         return max(max(added.lift) - law.margin, 0.0)
 
     def _raised(self, step: float, lift: float) -> float:
-        """Height by which a foot rises [m], by its step up and by the lift over what is in its way; 0 in a step down."""
+        """Height by which a foot rises [m], by its step up and by the lift over what is in its way; 0 downstairs."""
         return (1.0 - self._parameters.swing.descent_share(step)) * (max(step, 0.0) + lift)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
