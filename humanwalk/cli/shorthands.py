@@ -158,7 +158,7 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
         grammar: How a text is written.
     """
     words = text.strip().replace("_", " ")
-    tag = next((tag for tag in kinds if words.startswith(tag.replace("_", " "))), "")
+    tag = _kind_of(text, kinds)
     end = f"allowed: {grammar} with {noun} one of {', '.join(kinds)}"
     if not tag:
         near = did_you_mean("_".join(words.split()[:2]), tuple(kinds))
@@ -195,6 +195,12 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     return {tag: fields}
 
 
+def _kind_of(text: str, kinds: Mapping[str, type[Any]]) -> str:
+    """Tag of the kind with which a text begins; empty if it begins with none."""
+    words = text.strip().replace("_", " ")
+    return next((tag for tag in kinds if words.startswith(tag.replace("_", " "))), "")
+
+
 def terrain_overrides(text: str) -> dict[str, str]:
     """The terrain of a scenario, like "slope 3 deg", or the pieces of a course, like "stairs 17 cm then obstacle".
 
@@ -202,7 +208,8 @@ def terrain_overrides(text: str) -> dict[str, str]:
         ParameterError: no such terrain, piece, field or unit.
     """
     pieces = THEN.split(text.strip())
-    if len(pieces) > 1 or _begins_with_piece(text):
+    # A slope alone is that of a plane.
+    if len(pieces) > 1 or _kind_of(text, PIECES) not in ("", *_fields(TERRAINS["plane"])):
         parts = [_part(piece, "--terrain", PIECES, "PIECE", TERRAIN_GRAMMAR) for piece in pieces]
         return {"terrain": json.dumps({"course": {"pieces": parts}})}
     first, *others = text.split(",")
@@ -221,12 +228,6 @@ def terrain_overrides(text: str) -> dict[str, str]:
             )
     values = {name: _in_unit(*written, known[name].metadata.get("unit", ""), text) for name, written in fields.items()}
     return {"terrain": json.dumps({tag: values})}
-
-
-def _begins_with_piece(text: str) -> bool:
-    """Whether a terrain is one piece of a course; a slope alone is that of a plane."""
-    words = text.strip().replace("_", " ")
-    return any(words.startswith(tag.replace("_", " ")) for tag in PIECES if tag not in _fields(TERRAINS["plane"]))
 
 
 def _field(item: str, text: str) -> tuple[str, tuple[Any, str]]:

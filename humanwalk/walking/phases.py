@@ -195,11 +195,10 @@ class PhaseTransitions:
         rises = [goal.ground - start.ground for start, goal in swings]
         lifts = [self._added_lift(state, *swing) for swing in swings]
         factor, *others = map(self._parameters.pacing.duration_factor, rises, lifts)
-        steps = [start.step_to(goal) for start, goal in swings]
-        raised = [self._raised(step, lift) for step, lift in zip(steps, lifts, strict=True)]
+        behind, stance = (self._raised(*swing, lift) for swing, lift in zip(swings[:2], lifts[:2], strict=True))
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
-            raised=(raised[0], raised[1]),
+            raised=(behind, stance),
             command=command if any(preview.moves) else None,
         )
         if factor == 1.0 and preview.pace == 1.0:
@@ -243,8 +242,9 @@ class PhaseTransitions:
         added = clearance(state.ground, start, goal, state.heading, self._footholds.sole, law)
         return max(max(added.lift) - law.margin, 0.0)
 
-    def _raised(self, step: float, lift: float) -> float:
-        """Height by which a foot rises [m], by its step up and by the lift over what is in its way; 0 downstairs."""
+    def _raised(self, start: Foothold, goal: Foothold, lift: float) -> float:
+        """Height by which a foot rises [m]: to its foothold, and by its lift over the ground; less in a step down."""
+        step = start.step_to(goal)
         return (1.0 - self._parameters.swing.descent_share(step)) * (max(step, 0.0) + lift)
 
     def _reanchor_airborne_stance(self, state: PlannerState, body: BodyState) -> PlannerState:
