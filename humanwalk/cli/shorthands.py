@@ -174,7 +174,9 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
         if not rest or rest in said:
             continue
         found = PART.fullmatch(rest)
-        name = "_".join(found["name"].split()) or first if found else ""
+        name = "_".join(found["name"].split()) if found else ""
+        if found and found["number"]:
+            name = name or first
         if not found or name not in known:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(rest)} is not FIELD VALUE of {tag}, which has "

@@ -149,6 +149,7 @@ def test_every_piece_can_be_written(tag: str) -> None:
     [
         ("stairs then stares", "no such kind; allowed: .* did you mean stairs"),
         ("obstacle high 20 cm", "high 20 cm is not FIELD VALUE of obstacle, which has .*height"),
+        ("stairs sideways", "sideways is not FIELD VALUE of stairs, which has .*direction"),
         ("curb 12 furlongs", "furlongs is no unit of height; allowed: m or cm or mm"),
         ("obstacle down", "terrain.course.pieces.0.obstacle.direction: no such field"),
         ("curb -12 cm", r"terrain.course.pieces.0.curb.height: -0.12 is out of range"),
