@@ -6,6 +6,7 @@ toe-off, loses contact for less than that and stays in stance; a foot that brush
 swing.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -31,6 +32,9 @@ MIN_SWING_S = 0.1
 A leg swings for 0.4 s in walking (Perry and Burnfield 2010, chapter 1) and not under 0.3 s in a sprint: Weyand et al.
 (2000), J. Appl. Physiol. 89(5) 1991-1999. Bounces of the simulated heel last 0.02 to 0.03 s.
 """
+
+WHOLE_SWING_S = 0.3
+"""Time in the air after which contact ends a swing [s]: people swing a leg for at least that long (Weyand et al.)."""
 
 MIN_STANCE_S = 0.05
 """Shortest stance between two swings [s]; a shorter contact is a scuff. A sprinter's lasts 0.1 s (Weyand et al.)."""
@@ -76,7 +80,8 @@ class FootEvents:
 def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents:
     """Find stance, touchdown and toe-off of one foot.
 
-    A phase that the record cuts off at its start or end is not known to be a swing unless it is as long as one.
+    A phase that the record cuts off at its start or end is not known to be a stance or a swing unless it is as long as
+    one: it makes no event. But contact after a swing of WHOLE_SWING_S is a touchdown, however soon the record ends.
 
     Args:
         time: of the samples [s], increasing, shape (rows,).
@@ -85,12 +90,23 @@ def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents
     """
     contact = in_contact(force)
     rows = force.size
-    for first, end in stretches(~contact):
-        if end - first < rows and time[min(end, rows - 1)] - time[first] < MIN_SWING_S:
+
+    def short(mask: Mask, least: float) -> Iterator[tuple[int, int]]:
+        """Stretches that last for less than a time [s], but for one that fills the record."""
+        for first, end in stretches(mask):
+            if end - first < rows and time[min(end, rows - 1)] - time[first] < least:
+                yield first, end
+
+    for first, end in short(~contact, MIN_SWING_S):
+        if first > 0 and end < rows:
             contact[first:end] = True
-    for first, end in stretches(contact):
-        if first > 0 and end < rows and time[end] - time[first] < MIN_STANCE_S:
-            contact[first:end] = False
+    for first, end in short(contact, MIN_STANCE_S):
+        before = np.flatnonzero(contact[:first])
+        swing = time[first] - time[before[-1] if before.size else 0]
+        contact[first:end] = end == rows and swing >= WHOLE_SWING_S
+    # The record cuts these off: they are counted as the phase beside them.
+    for first, end in short(~contact, MIN_SWING_S):
+        contact[first:end] = True
     change = np.diff(contact.astype(int))
     counted = time[1:] >= begin
     return FootEvents(

@@ -34,6 +34,9 @@ TIMES = np.linspace(0.0, 1.0, SAMPLES)
 WIDTH = 10
 """Number of samples before and after a time for whose ground its lift is sufficient: a sixth of the swing."""
 
+SHORTEST_PART = WIDTH / (SAMPLES - 1)
+"""Shortest part of the swing in which the additional lift begins, ends, or follows a foot that is late."""
+
 ENDING = 0.25
 """Part of the swing before touchdown in which the margin decreases."""
 
@@ -136,6 +139,7 @@ def clearance(
     law: ClearanceParameters,
     ordinary: Array | float = 0.0,
     way: Callable[[Array], Array] = quintic_way,
+    now: tuple[float, complex] | None = None,
 ) -> Clearance:
     """Return what a swing from one foothold to another has to add: to clear what is known of the ground, and the rest.
 
@@ -148,14 +152,15 @@ def clearance(
         law: Parameters.
         ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
         way: Share of the way that an ordinary swing has made at a progress.
+        now: Progress of the swing and ankle over the level plane at it [m]: a foot that is behind its way passes edges
+            later. None: the foot is on its way.
     """
     if start.face.covers_as(goal.face):
         return Clearance().raised(ground.unseen)
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
-    ends = WIDTH / (SAMPLES - 1)
     # The toes of a foot that left its face steeply pitched pass below the plane.
-    below = np.where(np.abs(TIMES - 0.5) <= 0.5 - ends, np.maximum(-ordinary, 0.0), 0.0)
+    below = np.where(np.abs(TIMES - 0.5) <= 0.5 - SHORTEST_PART, np.maximum(-ordinary, 0.0), 0.0)
     if above.max() <= law.tolerance and not below.any():
         return Clearance().raised(ground.unseen)
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
@@ -169,6 +174,9 @@ def clearance(
         above[share >= 1.0 - near] = above[share >= 1.0 - near].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
     moved = way(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))
+    if now is not None:
+        progress, ankle = now
+        moved = _delayed(moved, progress, _share_of_way(ankle, start.position, goal.position), arrive)
     # The ground of an ordinary swing rises with the progress, not with the way.
     ahead = (way(TIMES) - moved) * (goal.ground - start.ground)
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
@@ -180,10 +188,30 @@ def clearance(
     lift = smooth / (WIDTH + 1.0)
     # The foot does not sink between two heights.
     lift = np.minimum(np.maximum.accumulate(lift), np.maximum.accumulate(lift[::-1])[::-1])
-    lift *= quintic_blend(np.clip(TIMES / max(depart, ends), 0.0, 1.0))[0]
-    lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, ends), 0.0, 1.0))[0]
+    lift *= quintic_blend(np.clip(TIMES / max(depart, SHORTEST_PART), 0.0, 1.0))[0]
+    lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, SHORTEST_PART), 0.0, 1.0))[0]
     every = (SAMPLES - 1) // INTERVALS
     return Clearance(tuple(lift[every:-1:every].tolist()), depart, arrive).raised(ground.unseen)
+
+
+def _delayed(moved: Array, progress: float, made: float, arrive: float) -> Array:
+    """Share of the way at `TIMES` of a foot that has made less of it at a progress, and catches up until it arrives.
+
+    Args:
+        moved: Share of the way at `TIMES` of a foot that is on its way.
+        progress: Progress of the swing.
+        made: Share of the way that the foot has made.
+        arrive: Progress at which it arrives.
+    """
+    late = max(float(np.interp(progress, TIMES, moved)) - made, 0.0)
+    remaining: Array = np.clip((arrive - TIMES) / max(arrive - progress, SHORTEST_PART), 0.0, 1.0)
+    return np.maximum(moved - late * remaining, 0.0)
+
+
+def _share_of_way(ankle: complex, start: complex, goal: complex) -> float:
+    """Share of the way from start to goal at which an ankle is."""
+    way = goal - start
+    return ((ankle - start) * way.conjugate()).real / max(abs(way) ** 2, 1e-9)
 
 
 def height_above_plane(

@@ -74,7 +74,8 @@ def _with_foothold(
     )
     # The desired foothold varies within a step; near a riser it would delay the foot for the rest of the swing.
     feet = (state.old_foot, landing)
-    added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary)
+    now = state.timing.swing_progress(state.elapsed), swing.motion.position
+    added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary, now=now)
     position = swing.foothold.position + smoothing * (place.position - swing.foothold.position)
     return swing._replace(
         foothold=place._replace(position=position),

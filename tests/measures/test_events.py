@@ -13,6 +13,7 @@ from humanwalk.measures.events import (
     CONTACT_ON_N,
     MIN_STANCE_S,
     MIN_SWING_S,
+    WHOLE_SWING_S,
     events_of,
     foot_events,
 )
@@ -50,6 +51,10 @@ def found(force: Any) -> Any:
     time = PERIOD * np.arange(force.size)
     events = foot_events(time, force)
     return time[events.touchdowns], time[events.toe_offs]
+
+
+def rows_of(times: Array) -> Array:
+    return np.rint(times / PERIOD)
 
 
 def assert_events(force: Array, stances: tuple[tuple[float, float], ...] = STANCES) -> None:
@@ -165,6 +170,41 @@ def test_stance_that_the_record_cuts_off_has_no_toe_off() -> None:
     touchdowns, toe_offs = found(force_of((0.5, 1.1), (3.48, 4.0)))
     np.testing.assert_allclose(touchdowns, [0.5, 3.48])
     np.testing.assert_allclose(toe_offs, [1.1])
+
+
+@pytest.mark.parametrize(
+    ("swing", "contact", "count"),
+    [
+        (0.15, 0.5 * MIN_STANCE_S, 0),
+        (0.15, 1.5 * MIN_STANCE_S, 1),
+        (WHOLE_SWING_S + PERIOD, 0.5 * MIN_STANCE_S, 1),
+    ],
+    ids=["toes that scuff", "as long as a stance", "after a whole swing"],
+)
+def test_contact_that_the_record_cuts_off_is_a_touchdown_if_it_cannot_be_a_scuff(
+    swing: float, contact: float, count: int
+) -> None:
+    down = 3.5 - contact
+    assert found(force_of((down - swing - 0.6, down - swing), (down, 4.0)))[0].size == 1 + count
+
+
+@given(
+    st.lists(st.tuples(st.integers(1, 120), st.integers(1, 120)), min_size=2, max_size=12),
+    st.floats(0.0, 1.0),
+    st.floats(0.0, 1.0),
+)
+def test_part_of_a_record_has_events_of_the_whole_record_only(
+    pieces: list[tuple[int, int]], begin: float, end: float
+) -> None:
+    force = np.concatenate([np.repeat((0.0, WEIGHT), lengths) for lengths in pieces])
+    begin, end = sorted((begin, end))
+    first, last = int(begin * force.size), max(int(end * force.size), int(begin * force.size) + 1)
+    touchdowns, toe_offs = found(force)
+    some_touchdowns, some_toe_offs = found(force[first:last])
+    # Contact at the end of a record, a long time after the last one, may be a scuff all the same.
+    known = some_touchdowns[some_touchdowns <= PERIOD * (last - first) - MIN_STANCE_S]
+    assert np.isin(rows_of(known) + first, rows_of(touchdowns)).all()
+    assert np.isin(rows_of(some_toe_offs) + first, rows_of(toe_offs)).all()
 
 
 def test_loss_of_contact_that_the_record_cuts_off_is_no_toe_off_before_it_is_as_long_as_a_swing() -> None:

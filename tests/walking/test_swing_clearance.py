@@ -19,14 +19,19 @@ LAW = ClearanceParameters()
 LIFT = (*(0.2 * k / INTERVALS for k in range(1, INTERVALS - 1)), 0.05)
 
 
-def sole_above_ground(course: Course, start: complex, end: complex) -> float:
-    """Least height [m] of a level sole above the ground between a tenth and nine tenths of its swing."""
+def sole_above_ground(course: Course, start: complex, end: complex, progress: float = 0.1, late: float = 0.0) -> float:
+    """Least height [m] of a level sole above the ground until nine tenths of its swing.
+
+    At a progress it is late by a share of its way, which it makes up for until it arrives.
+    """
     feet = Foothold.on(course, start), Foothold.on(course, end)
-    added = clearance(course, *feet, 0.0, SOLE, LAW)
+    now = progress, start + (quintic_blend(progress)[0] - late) * (end - start)
+    added = clearance(course, *feet, 0.0, SOLE, LAW, now=now if late else None)
     least = np.inf
-    for s in np.linspace(0.1, 0.9, 25):
+    for s in np.linspace(progress, 0.9, 25):
         share = quintic_blend(clip((s - added.depart) / (added.arrive - added.depart), 0.0, 1.0))[0]
-        ankle = start + share * (end - start)
+        behind = late * clip((added.arrive - s) / (added.arrive - progress), 0.0, 1.0)
+        ankle = start + (share - behind) * (end - start)
         height = feet[0].ground + quintic_blend(s)[0] * (feet[1].ground - feet[0].ground) + added.at(s).value
         path = np.array([(ankle.real + x, ankle.imag) for x in (-SOLE.back, SOLE.front)])
         least = min(least, height - highest_along(course, path, 1e-6))
@@ -48,6 +53,13 @@ STAIRS = {direction: Course(pieces=(Stairs(rise=0.185, tread=0.28, direction=dir
 def test_two_treads_of_stairs_are_cleared(direction: str) -> None:
     ankle = 0.5 + 0.28 * 2 + 0.062
     assert sole_above_ground(STAIRS[direction], complex(ankle), complex(ankle + 0.56)) > 0.0
+
+
+@pytest.mark.parametrize("late", [0.0, 0.2, 0.3])
+@pytest.mark.parametrize("beyond", [0.1, 0.2])
+def test_a_foot_that_is_late_passes_the_last_edges_of_stairs(late: float, beyond: float) -> None:
+    ankle, bottom = 0.5 + 0.28 * 7 + 0.062, 0.5 + 0.28 * 9 + beyond
+    assert sole_above_ground(STAIRS["down"], complex(ankle), complex(bottom), 0.5, late) > 0.0
 
 
 def test_beside_a_riser_the_foot_rises_first_and_below_an_edge_it_sinks_last() -> None:
