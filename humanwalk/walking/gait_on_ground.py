@@ -34,7 +34,7 @@ from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold, places_on
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion
-from humanwalk.walking.swing_clearance import TIMES, Clearance, ClearanceParameters, clearance
+from humanwalk.walking.swing_clearance import TIMES, Clearance, ClearanceParameters, OrdinarySwing, clearance
 
 HEEL_FALL = 0.5
 """Part of the swing in which the heel that rose before it sinks again."""
@@ -282,10 +282,9 @@ class GaitOnGround(WalkingGait):
             start, goal = (self.footholds(k)[side] for k in step)
             places = (self._place(side, step[0]), self._place(side, step[1]))
             curve = self.swing_curve(step)
-            ordinary = lowest_point(curve, self.parameters.toe_drop, self._sole)
-            added = clearance(
-                self._ground, start, goal, 0.0, self._sole, self._law, ordinary, lambda tau: curve.way(tau)[0]
-            )
+            lowest = lowest_point(curve, self.parameters.toe_drop, self._sole)
+            ordinary = OrdinarySwing(lowest, lambda tau: curve.way(tau)[0])
+            added = clearance(self._ground, start, goal, 0.0, self._sole, self._law, ordinary)
             heel_rise = self._heel_rise(side, step[0])
             self._swings[side, step[0]] = PlacedSwing(curve, start, goal, places, added, heel_rise, self._sole.front)
         return self._swings[side, step[0]]

@@ -117,7 +117,7 @@ class PhaseTransitions:
                 start_yaw=foot.yaw,
                 start=foot.position,
                 lift_off=state.elapsed,
-                ordinary=np.array([profile.lowest(s, flat_height, sole) for s in TIMES.tolist()]),
+                lowest=np.array([profile.lowest(s, flat_height, sole) for s in TIMES.tolist()]),
                 start_toes=foot_behind(state, command, self._parameters).toes[0],
             ),
         )

@@ -33,7 +33,7 @@ class Swing(NamedTuple):
         lift_off: Time on the clock of the step at lift-off [s].
         rise: Height of the ground at the foothold above that at lift-off [m].
         clearance: What the swing adds to clear the ground.
-        ordinary: Height of the lowest point of the sole without that, at `TIMES` [m].
+        lowest: Height of the lowest point of the sole without that, at `TIMES` [m].
     """
 
     motion: PlanarMotion
@@ -45,7 +45,7 @@ class Swing(NamedTuple):
     lift_off: float = 0.0
     rise: float = 0.0
     clearance: Clearance = Clearance()
-    ordinary: Array | float = 0.0
+    lowest: Array | float = 0.0
 
 
 class PlannerState(NamedTuple):

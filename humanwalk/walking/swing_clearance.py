@@ -130,6 +130,25 @@ def quintic_way(progress: Array) -> Array:
     return share
 
 
+class OrdinarySwing(NamedTuple):
+    """A swing without addition.
+
+    Attributes:
+        lowest: Height of the sole's lowest point above the plane at `TIMES` [m], shape (SAMPLES,), or at all of them.
+        way: Share of the way that the foot has made at a progress.
+        now: Progress, and ankle over the level plane at it [m]: a foot that is behind its way passes edges later. None:
+            the foot is on its way.
+    """
+
+    lowest: Array | float = 0.0
+    way: Callable[[Array], Array] = quintic_way
+    now: tuple[float, complex] | None = None
+
+
+ON_ITS_WAY = OrdinarySwing()
+"""A swing of the balanced walker whose sole is never below the plane."""
+
+
 def clearance(
     ground: Ground,
     start: Foothold,
@@ -137,9 +156,7 @@ def clearance(
     yaw: float,
     sole: SoleExtent,
     law: ClearanceParameters,
-    ordinary: Array | float = 0.0,
-    way: Callable[[Array], Array] = quintic_way,
-    now: tuple[float, complex] | None = None,
+    swing: OrdinarySwing = ON_ITS_WAY,
 ) -> Clearance:
     """Return what a swing from one foothold to another has to add: to clear what is known of the ground, and the rest.
 
@@ -150,17 +167,14 @@ def clearance(
         yaw: Heading of the foot [rad].
         sole: Extent of the sole.
         law: Parameters.
-        ordinary: Height of the sole's lowest point above the plane at `TIMES` without addition [m], shape (SAMPLES,).
-        way: Share of the way that an ordinary swing has made at a progress.
-        now: Progress of the swing and ankle over the level plane at it [m]: a foot that is behind its way passes edges
-            later. None: the foot is on its way.
+        swing: The swing without addition.
     """
     if start.face.covers_as(goal.face):
         return Clearance().raised(ground.unseen)
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)
     # The toes of a foot that left its face steeply pitched pass below the plane.
-    below = np.where(np.abs(TIMES - 0.5) <= 0.5 - SHORTEST_PART, np.maximum(-ordinary, 0.0), 0.0)
+    below = np.where(np.abs(TIMES - 0.5) <= 0.5 - SHORTEST_PART, np.maximum(-swing.lowest, 0.0), 0.0)
     if above.max() <= law.tolerance and not below.any():
         return Clearance().raised(ground.unseen)
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
@@ -173,15 +187,25 @@ def clearance(
         arrive = 1.0 - law.sinking_part(goal.ground - start.ground)
         above[share >= 1.0 - near] = above[share >= 1.0 - near].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
-    moved = way(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))
-    if now is not None:
-        progress, ankle = now
+    moved = swing.way(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))
+    if swing.now is not None:
+        progress, ankle = swing.now
         moved = _delayed(moved, progress, _share_of_way(ankle, start.position, goal.position), arrive)
     # The ground of an ordinary swing rises with the progress, not with the way.
-    ahead = (way(TIMES) - moved) * (goal.ground - start.ground)
+    ahead = (swing.way(TIMES) - moved) * (goal.ground - start.ground)
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
     stands_out = np.interp(moved, share, above)
-    needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - ordinary, 0.0), below)
+    needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - swing.lowest, 0.0), below)
+    return Clearance(_smooth_lift(needed, depart, arrive), depart, arrive).raised(ground.unseen)
+
+
+def _smooth_lift(needed: Array, depart: float, arrive: float) -> tuple[float, ...]:
+    """Additional height at the inner ends of the `INTERVALS` [m] that is sufficient at all `TIMES`.
+
+    Args:
+        needed: Additional height that is needed at `TIMES` [m], shape (SAMPLES,).
+        depart, arrive: See `Clearance`.
+    """
     # Widened and then averaged over the same time, it is still sufficient, and smooth.
     around = np.lib.stride_tricks.sliding_window_view(np.pad(needed, 2 * WIDTH), 2 * WIDTH + 1).max(axis=1)
     smooth = np.lib.stride_tricks.sliding_window_view(around, 2 * WIDTH + 1) @ np.hanning(2 * WIDTH + 3)[1:-1]
@@ -191,7 +215,7 @@ def clearance(
     lift *= quintic_blend(np.clip(TIMES / max(depart, SHORTEST_PART), 0.0, 1.0))[0]
     lift *= quintic_blend(np.clip((1.0 - TIMES) / max(1.0 - arrive, SHORTEST_PART), 0.0, 1.0))[0]
     every = (SAMPLES - 1) // INTERVALS
-    return Clearance(tuple(lift[every:-1:every].tolist()), depart, arrive).raised(ground.unseen)
+    return tuple(lift[every:-1:every].tolist())
 
 
 def _delayed(moved: Array, progress: float, made: float, arrive: float) -> Array:

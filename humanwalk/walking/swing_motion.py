@@ -10,7 +10,7 @@ from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
-from humanwalk.walking.swing_clearance import clearance
+from humanwalk.walking.swing_clearance import OrdinarySwing, clearance
 
 
 class SwingGoal(NamedTuple):
@@ -75,7 +75,8 @@ def _with_foothold(
     # The desired foothold varies within a step; near a riser it would delay the foot for the rest of the swing.
     feet = (state.old_foot, landing)
     now = state.timing.swing_progress(state.elapsed), swing.motion.position
-    added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, swing.ordinary, now=now)
+    ordinary = OrdinarySwing(swing.lowest, now=now)
+    added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, ordinary)
     position = swing.foothold.position + smoothing * (place.position - swing.foothold.position)
     return swing._replace(
         foothold=place._replace(position=position),

@@ -12,7 +12,7 @@ from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Curb, Obstacle, Stairs
 from humanwalk.walking.felt_ground import FeltGround
 from humanwalk.walking.footholds import Foothold
-from humanwalk.walking.swing_clearance import INTERVALS, TIMES, Clearance, ClearanceParameters, clearance
+from humanwalk.walking.swing_clearance import INTERVALS, TIMES, Clearance, ClearanceParameters, OrdinarySwing, clearance
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 LAW = ClearanceParameters()
@@ -26,7 +26,7 @@ def sole_above_ground(course: Course, start: complex, end: complex, progress: fl
     """
     feet = Foothold.on(course, start), Foothold.on(course, end)
     now = progress, start + (quintic_blend(progress)[0] - late) * (end - start)
-    added = clearance(course, *feet, 0.0, SOLE, LAW, now=now if late else None)
+    added = clearance(course, *feet, 0.0, SOLE, LAW, OrdinarySwing(now=now if late else None))
     least = np.inf
     for s in np.linspace(progress, 0.9, 25):
         share = quintic_blend(clip((s - added.depart) / (added.arrive - added.depart), 0.0, 1.0))[0]
@@ -116,7 +116,7 @@ def test_toes_that_would_pass_below_the_plane_between_two_faces_are_lifted_to_it
     course = Course(pieces=(Rough(length=4.0, height=0.002),), run_up=0.5)
     feet = Foothold.on(course, 1.062 + 0.1j), Foothold.on(course, 1.862 + 0.1j)
     ordinary = 0.01 - depth * np.exp(-(((TIMES - middle) / 0.1) ** 2))
-    added = clearance(course, *feet, 0.0, SOLE, LAW, ordinary)
+    added = clearance(course, *feet, 0.0, SOLE, LAW, OrdinarySwing(ordinary))
     inner = (TIMES >= 0.2) & (TIMES <= 0.8)
     lowest = ordinary + [added.at(float(progress)).value for progress in TIMES]
     assert lowest[inner].min() >= -1e-3
