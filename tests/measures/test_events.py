@@ -14,6 +14,7 @@ from humanwalk.measures.events import (
     MIN_STANCE_S,
     MIN_SWING_S,
     WHOLE_SWING_S,
+    FootEvents,
     events_of,
     foot_events,
 )
@@ -46,15 +47,14 @@ def lift(force: Array, *intervals: tuple[float, float]) -> Array:
     return force
 
 
+def events_in(force: Any) -> FootEvents:
+    return foot_events(PERIOD * np.arange(force.size), force)
+
+
 def found(force: Any) -> Any:
     """Touchdown and toe-off times [s]."""
-    time = PERIOD * np.arange(force.size)
-    events = foot_events(time, force)
-    return time[events.touchdowns], time[events.toe_offs]
-
-
-def rows_of(times: Array) -> Array:
-    return np.rint(times / PERIOD)
+    events = events_in(force)
+    return events.time[events.touchdowns], events.time[events.toe_offs]
 
 
 def assert_events(force: Array, stances: tuple[tuple[float, float], ...] = STANCES) -> None:
@@ -189,22 +189,21 @@ def test_contact_that_the_record_cuts_off_is_a_touchdown_if_it_cannot_be_a_scuff
 
 
 @given(
-    st.lists(st.tuples(st.integers(1, 120), st.integers(1, 120)), min_size=2, max_size=12),
-    st.floats(0.0, 1.0),
-    st.floats(0.0, 1.0),
+    st.lists(st.tuples(st.integers(1, 120), st.integers(1, 60)), min_size=2, max_size=6),
+    st.floats(0.0, 0.9),
 )
-def test_part_of_a_record_has_events_of_the_whole_record_only(
-    pieces: list[tuple[int, int]], begin: float, end: float
-) -> None:
+def test_part_of_a_record_has_events_of_the_whole_record_only(pieces: list[tuple[int, int]], begin: float) -> None:
     force = np.concatenate([np.repeat((0.0, WEIGHT), lengths) for lengths in pieces])
-    begin, end = sorted((begin, end))
-    first, last = int(begin * force.size), max(int(end * force.size), int(begin * force.size) + 1)
-    touchdowns, toe_offs = found(force)
-    some_touchdowns, some_toe_offs = found(force[first:last])
-    # Contact at the end of a record, a long time after the last one, may be a scuff all the same.
-    known = some_touchdowns[some_touchdowns <= PERIOD * (last - first) - MIN_STANCE_S]
-    assert np.isin(rows_of(known) + first, rows_of(touchdowns)).all()
-    assert np.isin(rows_of(some_toe_offs) + first, rows_of(toe_offs)).all()
+    whole, first = events_in(force), int(begin * force.size)
+    for last in range(first + 1, force.size, 5):
+        part = events_in(force[first:last])
+        known = part.touchdowns.tolist()
+        # Contact as the record ends, a whole swing after the last stance, may be a scuff all the same.
+        is_late = bool(known) and last - first - known[-1] < rows(MIN_STANCE_S)
+        if is_late and not part.contact[max(known[-1] - rows(WHOLE_SWING_S) + 1, 0) : known[-1]].any():
+            known.pop()
+        assert {row + first for row in known} <= set(whole.touchdowns)
+        assert set(part.toe_offs + first) <= set(whole.toe_offs)
 
 
 def test_loss_of_contact_that_the_record_cuts_off_is_no_toe_off_before_it_is_as_long_as_a_swing() -> None:
