@@ -17,7 +17,7 @@ from humanwalk.numerics import Array, Indices, Mask
 from humanwalk.numerics.rotation import cross_matrix
 from humanwalk.quantity import GRAVITY
 from humanwalk.terrain import Ground
-from humanwalk.walking.walking_reference import FootReference, WalkingReference
+from humanwalk.walking.walking_reference import FootReference, FootTask, WalkingReference
 
 EDGES = 4
 """Number of edges of a friction pyramid."""
@@ -128,7 +128,9 @@ class SolesOnGround(NamedTuple):
         edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
         J_edges = (edges_W @ J_points).reshape(-1, J.shape[-1])
         limits = np.array((np.minimum(least, largest)[points], largest[points])) / (p.force_unit * np.sqrt(share))
-        return Contacts(points, soles.side[points], self.p_W[points], limits, edges_W, J_edges)
+        side = soles.side[points]
+        on_ball = [i for i in np.unique(side).tolist() if feet[i].task is FootTask.HEEL_OFF]
+        return Contacts(points, side, on_ball, self.p_W[points], limits, edges_W, J_edges)
 
     def _heel_limits(self, feet: Sequence[FootReference], is_near: Mask, weight: float) -> Array:
         """Least and largest force along each edge of the contact points [N], (2, k); unlimited but under a heel.
@@ -163,6 +165,7 @@ class Contacts(NamedTuple):
     Attributes:
         points: indices of the points, (c,).
         side: index of the foot of each point in SIDES, (c,).
+        on_ball: indices of the feet with points whose heel is up.
         p_W: the points in W [m], (c, 3).
         limits: least and largest force along each edge, per length of the edge, (2, c).
         edges_W: edges of each point's friction pyramid in W, (c, edges, 3).
@@ -171,6 +174,7 @@ class Contacts(NamedTuple):
 
     points: Indices
     side: Indices
+    on_ball: Sequence[int]
     p_W: Array
     limits: Array
     edges_W: Array
@@ -180,6 +184,21 @@ class Contacts(NamedTuple):
         """Force on each point in W, (c, 3), from the forces along all edges, (c x edges,)."""
         forces: Array = (edge_forces.reshape(*self.edges_W.shape[:2], 1) * self.edges_W).sum(axis=1)
         return forces
+
+    def twist(self, arm: float) -> Array:
+        """Limits of the twist: rows whose products with the edge forces must not be positive, (2 x feet, c x edges).
+
+        The moment of a foot whose heel is up, about the vertical through the mean of its contact points, is at most an
+        arm [m] times its vertical force, in both directions.
+        """
+        rows = np.zeros((len(self.on_ball), 2, *self.edges_W.shape[:2]))
+        for row, foot in zip(rows, self.on_ball, strict=True):
+            of_foot = self.side == foot
+            edges = self.edges_W[of_foot]
+            x, y, _ = (self.p_W[of_foot] - self.p_W[of_foot].mean(axis=0)).T[:, :, None]
+            moment = x * edges[:, :, 1] - y * edges[:, :, 0]
+            row[:, of_foot] = np.array((moment, -moment)) - arm * edges[:, :, 2]
+        return rows.reshape(2 * len(self.on_ball), len(self.J_edges))
 
     def across(self, p_WV: Array) -> Array:
         """Components of the edges across the lines from their points to a point V, in W, (c x edges, 3 per foot).

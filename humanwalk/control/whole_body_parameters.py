@@ -50,16 +50,38 @@ class ForcePivot:
     height: float = quantity(1.0, "m", 0.0, 2.0)
     """Height above the center of mass."""
 
-    unit: float = quantity(3.0, "N", 0.5, 1e6)
+    unit: float = quantity(2.85, "N", 0.5, 1e6)
     """Part of the force of a foot across its line that costs as much as an acceleration error of 1 m/s2 with the weight
     1; the cost fades as the foot behind is unloaded."""
+
+
+@dataclass(frozen=True)
+class BallTwist:
+    """Largest moment about the vertical of a foot whose heel is up, per vertical force.
+
+    With more than the ball of the foot carries the foot twists on it (docs/likeness.md, "Twist on the ball"). When the
+    body has to be caught, the moment matters more than the twist.
+    """
+
+    arm: float = quantity(0.008, "m", 0.001, 0.1)
+    """Largest moment per vertical force while the DCM is near its reference."""
+
+    dcm_error: float = quantity(0.03, "m", 0.0, 1.0)
+    """Distance of the DCM from its reference from which on the moment may be larger."""
+
+    gain: float = quantity(1.0, "", 0.0, 10.0)
+    """By how much the largest moment per vertical force grows with that distance."""
+
+    def at(self, dcm_error: float) -> float:
+        """Largest moment per vertical force [m] at a distance of the DCM from its reference [m]."""
+        return self.arm + self.gain * max(dcm_error - self.dcm_error, 0.0)
 
 
 @dataclass(frozen=True)
 class WholeBodyParameters:
     """Tasks and limits of the whole-body controller."""
 
-    com_weight: float = quantity(770.0, "", 0.0, 1e5)
+    com_weight: float = quantity(775.0, "", 0.0, 1e5)
     """Weight of the horizontal acceleration of the center of mass, which follows from the planned pivot alone.
     A fast swing foot demands 60 m/s2, the center of mass 3 m/s2; the weight keeps the first from disturbing it."""
 
@@ -70,7 +92,7 @@ class WholeBodyParameters:
     com_height: TaskGains = critical(100.0, 275.0)
     """Height of the center of mass."""
 
-    stance: TaskGains = TaskGains(0.0, 42.0, 1000.0)
+    stance: TaskGains = TaskGains(0.0, 39.0, 1000.0)
     """Zero velocity of a foot in stance."""
 
     sinking_speed: float = quantity(1.8, "m/s", 0.0, 5.0)
@@ -82,7 +104,7 @@ class WholeBodyParameters:
     heel_off: TaskGains = critical(400.0, 27.0)
     """Pitch of a foot whose heel rises."""
 
-    swing_position: TaskGains = critical(335.0, 40.0)
+    swing_position: TaskGains = critical(335.0, 38.5)
     """Position of the swing ankle."""
 
     swing_rotation: TaskGains = critical(400.0, 20.0)
@@ -91,7 +113,7 @@ class WholeBodyParameters:
     swing_acceleration_limit: float = quantity(100.0, "m/s2", 10.0, 1000.0)
     """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
 
-    pelvis: TaskGains = critical(200.0, 2.0)
+    pelvis: TaskGains = critical(200.0, 2.05)
     """Rotation of the pelvis."""
 
     chest: TaskGains = critical(150.0, 13.0)
@@ -116,6 +138,9 @@ class WholeBodyParameters:
     friction_use: float = quantity(0.8, "", 0.1, 1.0)
     """Share of the ground's friction coefficient that planned contact forces use at most."""
 
+    ball_twist: BallTwist = BallTwist()
+    """Limit of the moment about the vertical of a foot whose heel is up."""
+
     contact_height: float = quantity(0.008, "m", 0.001, 0.05)
     """Height of a contact point above the ground from which on it carries no force."""
 
@@ -129,7 +154,7 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(4.1, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(4.0, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""

@@ -32,6 +32,9 @@ UNLIMITED = np.array(((-np.inf,), (np.inf,)))
 UNBOUNDED = np.tile(((-1e4,), (1e4,)), 6)
 """Lower and upper bounds of the accelerations of the floating base [rad/s2, m/s2]; never active."""
 
+NOT_POSITIVE = np.array(((-1e4,), (0.0,)))
+"""Lower and upper bound of what must not be positive; the lower one is never active."""
+
 JOINT_LIMIT_RANGE = np.array(((-10.0, -1.0), (1.0, 10.0)))
 """Lower ends, then upper ends, of the ranges of the lower and of the upper bound of a joint's acceleration, relative to
 the largest that a joint limit requires."""
@@ -172,6 +175,8 @@ class WholeBodyQp:
         H += effort.T @ effort
         g += load[self._effort] / p.torque_unit @ effort
 
+        twist = np.pad(contacts.twist(p.ball_twist.at(reference.dcm_error)), ((0, 0), (0, m)))
+
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
         toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]
         low, high = p.joint_limit_acceleration * JOINT_LIMIT_RANGE[:, :, None]
@@ -180,8 +185,9 @@ class WholeBodyQp:
             UNBOUNDED,
             np.clip(toward_limits, low, high),
             self._torque_range - load,
+            np.repeat(NOT_POSITIVE, len(twist), axis=1),
         )
-        return QuadraticProgram(H, g, A, *np.hstack(bounds)), prescribed, contacts
+        return QuadraticProgram(H, g, np.vstack((A, twist)), *np.hstack(bounds)), prescribed, contacts
 
 
 def _pivot_cost(contacts: Contacts, body: Dynamics, reference: WalkingReference, p: WholeBodyParameters) -> Array:

@@ -21,13 +21,13 @@ ROUNDING = 1e-9
 class BaseOfSupport:
     """The part of a foot that the zero-moment point may use, relative to the ankle."""
 
-    center: float = quantity(0.0415, "m", -0.05, 0.1)
+    center: float = quantity(0.041, "m", -0.05, 0.1)
     """Distance of the nominal zero-moment point ahead of the ankle."""
 
     roll: float = quantity(0.096, "s", 0.0, 0.3)
     """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
-    pivot: float = quantity(0.065, "s", 0.0, 0.2)
+    pivot: float = quantity(0.0655, "s", 0.0, 0.2)
     """Distance of the centroidal moment pivot behind the nominal zero-moment point when a foot leaves the ground, and
     ahead of it at touchdown, per speed: the rate of the angular momentum of the swinging leg, over the weight."""
 

@@ -30,7 +30,7 @@ class Rollover(NamedTuple):
 class FootRockers:
     """Rolling over heel and ball."""
 
-    heel: float = quantity(0.13, "s", 0.02, 0.4)
+    heel: float = quantity(0.132, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
     landing_load: float = quantity(0.16, "", 0.0, 1.0)
@@ -44,12 +44,12 @@ class FootRockers:
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    unloading: float = quantity(8.0, "1/s", 0.5, 1e4)
+    unloading: float = quantity(8.9, "1/s", 0.5, 1e4)
     """Rate at which the largest vertical force under the heel falls to zero at heel-off [body weights per second].
     If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness.md, "A heel that
     lands and leaves with its load")."""
 
-    pitch: float = quantity(1.27, "rad", 0.0, 1.7)
+    pitch: float = quantity(1.265, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 
     full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
@@ -59,10 +59,10 @@ class FootRockers:
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
     too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness.md)."""
 
-    late_rise: float = quantity(1.0, "", 0.0, 1.0)
+    late_rise: float = quantity(0.95, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
-    toes: float = quantity(0.6, "rad", 0.0, 1.2)
+    toes: float = quantity(0.61, "rad", 0.0, 1.2)
     """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
     (docs/likeness.md, "What makes the forces human")."""
 

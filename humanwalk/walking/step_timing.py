@@ -16,7 +16,7 @@ class StepTiming:
     step: float = quantity(0.53, "s", 0.3, 1.2)
     """From touchdown to touchdown of the other foot in a careful step, and in all steps without a walk ratio."""
 
-    walk_ratio: float = quantity(0.358, "m s", 0.0, 1.0)
+    walk_ratio: float = quantity(0.361, "m s", 0.0, 1.0)
     """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
 
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)

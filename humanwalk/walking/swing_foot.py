@@ -50,7 +50,7 @@ class SwingParameters:
     """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the
     heel of a pitched foot meets the ground before the end of the swing, while it is fast."""
 
-    landing_sink_rate: float = quantity(0.05, "m/s", 0.0, 0.5)
+    landing_sink_rate: float = quantity(0.055, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
     push_off: float = quantity(8.15, "1/m", 0.0, 30.0)

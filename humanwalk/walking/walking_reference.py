@@ -174,7 +174,7 @@ class WalkingReference:
         phase, phase_time: Phase of the walk and the time since it began; in single support, since touchdown [s].
         zmp: Zero-moment point [m].
         pivot: Centroidal moment pivot, which determines the acceleration of the center of mass [m].
-        dcm, dcm_reference: Measured and nominal divergent component of motion [m], for records.
+        dcm, dcm_reference: Measured and nominal divergent component of motion [m].
         com_height: Center of mass in W [m].
         ground_height: Ground under the zero-moment point in W [m].
         right, left: The feet.
@@ -217,6 +217,11 @@ class WalkingReference:
     def foot(self, side: Side) -> FootReference:
         """The foot of a side."""
         return self.right if side == "Right" else self.left
+
+    @property
+    def dcm_error(self) -> float:
+        """Distance of the divergent component of motion from its nominal place [m]."""
+        return abs(self.dcm - self.dcm_reference)
 
     @property
     def is_stepping(self) -> bool:

@@ -16,7 +16,7 @@ from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
-from humanwalk.control.whole_body_parameters import ForcePivot, WholeBodyParameters
+from humanwalk.control.whole_body_parameters import BallTwist, ForcePivot, WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
 from humanwalk.control.whole_body_tasks import Task
 from humanwalk.numerics import Array
@@ -388,6 +388,44 @@ def test_the_force_on_one_foot_points_anywhere(dynamics: BodyDynamics, skeleton:
     )
     programs = [program.program(body, alone, rest(program))[0] for program in (free, pointed)]
     assert np.array_equal(programs[0].H, programs[1].H)
+
+
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+@pytest.mark.parametrize("dcm_error", [0.0, 0.033, 0.3])
+def test_a_foot_on_its_ball_carries_a_limited_moment_about_the_vertical(
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton, turn: float, dcm_error: float
+) -> None:
+    """The limit is in proportion to its vertical force, and grows when the body has to be caught."""
+    body, under = in_double_support(dynamics, skeleton), slice(6, 12)
+    on_ball = FootReference(FootTask.HEEL_OFF, 1.0, 0.0, pitch=ScalarMotion(0.25, 0.0, 0.0))
+    in_the_air = FootReference(FootTask.FLAT, 0.0, 0.0, LEVEL.axes(np.zeros(2)).T)
+    reference = reference_for(body, zmp=complex(*sole_points(body, skeleton)[under, :2].mean(axis=0)))
+    dcm = reference.dcm_reference + 1j * dcm_error
+    reference = replace(reference, left=on_ball, right=in_the_air, pelvis_yaw=turn, dcm=dcm)
+    *_, contacts = qp.program(body, reference, rest(qp))
+
+    def arm(qp: WholeBodyQp) -> float:
+        """Moment of the forces about the vertical through the mean of the contact points, over their vertical force."""
+        f = qp.solve(body, reference, rest(qp)).forces[contacts.points]
+        p = contacts.p_W - contacts.p_W.mean(axis=0)
+        return float(np.cross(p, f)[:, 2].sum() / f[:, 2].sum())
+
+    unlimited = WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, ball_twist=BallTwist(arm=0.1)))
+    largest = PARAMETERS.ball_twist.at(dcm_error)
+    assert abs(arm(unlimited)) > PARAMETERS.ball_twist.arm + 1e-3
+    assert turn * arm(qp) == pytest.approx(min(largest, abs(arm(unlimited))), abs=1e-5)
+
+
+def test_the_moment_of_a_flat_foot_about_the_vertical_has_no_limit_but_friction(
+    dynamics: BodyDynamics, skeleton: Skeleton
+) -> None:
+    body = body_at(dynamics)
+    tight, loose = (
+        WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, ball_twist=BallTwist(arm=arm)))
+        for arm in (0.001, 0.1)
+    )
+    programs = [program.program(body, reference_for(body), rest(program))[0] for program in (tight, loose)]
+    assert np.array_equal(programs[0].A, programs[1].A)
 
 
 def test_a_style_accelerates_its_joint(dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton) -> None:
