@@ -82,21 +82,32 @@ class PlanarMotion(NamedTuple):
     acceleration: complex = 0.0
 
     def towards(self, goal: PlanarMotion, remaining: float, dt: float, jerk_limit: float) -> PlanarMotion:
-        """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds.
+        """The motion `dt` later on the quintic that reaches `goal` after `remaining` seconds, but not before `dt`.
 
-        The jerk is that of the quintic from the current motion, up to a limit [m/s3], and constant for `dt`; the goal
-        may move from call to call.
+        The goal may move from call to call. The mean jerk during `dt` is limited [m/s3]; at the limit it is constant.
         """
-        r = max(remaining, 2.0 * dt)
-        jerk = 60.0 * (goal.position - self.position) / r**3
-        jerk -= (36.0 * self.velocity + 24.0 * goal.velocity) / r**2
-        jerk -= (9.0 * self.acceleration - 3.0 * goal.acceleration) / r
+        T = max(remaining, dt)
+        end, s = self.after(T), dt / T
+        p, v = goal.position - end.position, T * (goal.velocity - end.velocity)
+        a = T**2 * (goal.acceleration - end.acceleration)
+        # With s from 0 to 1 the quintic is the motion of constant acceleration plus c3 s^3 + c4 s^4 + c5 s^5.
+        c3, c4, c5 = 10.0 * p - 4.0 * v + 0.5 * a, -15.0 * p + 7.0 * v - a, 6.0 * p - 3.0 * v + 0.5 * a
+        jerk = (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5)) / T**3
         if abs(jerk) > jerk_limit:
-            jerk *= jerk_limit / abs(jerk)
+            return self.after(dt, jerk * jerk_limit / abs(jerk))
+        straight = self.after(dt)
         return PlanarMotion(
-            self.position + dt * (self.velocity + dt * (self.acceleration / 2.0 + dt * jerk / 6.0)),
-            self.velocity + dt * (self.acceleration + dt * jerk / 2.0),
-            self.acceleration + dt * jerk,
+            straight.position + s**3 * (c3 + s * (c4 + s * c5)),
+            straight.velocity + s**2 * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)) / T,
+            straight.acceleration + dt * jerk,
+        )
+
+    def after(self, time: float, jerk: complex = 0.0) -> PlanarMotion:
+        """The motion a time later [s] with a constant jerk [m/s3]."""
+        return PlanarMotion(
+            self.position + time * (self.velocity + time * (self.acceleration / 2.0 + time * jerk / 6.0)),
+            self.velocity + time * (self.acceleration + time * jerk / 2.0),
+            self.acceleration + time * jerk,
         )
 
     def with_sideways_of(self, other: PlanarMotion, direction: complex) -> PlanarMotion:
