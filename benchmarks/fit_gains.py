@@ -1,21 +1,22 @@
-"""Fits gains of the balanced walk to the goals of likeness: python benchmarks/fit_gains.py [SCENARIO [GAIN ...]]
+"""Fits gains of the balanced walk to the goals of likeness: python benchmarks/fit_gains.py [GAIN ...]
 
-Measures how every gain changes the values of the goals and the nine curves of the score, at three speeds on both
-contact models. Searches the gains with which the most goals would be reached if these changes added up, and walks with
-them. A round takes some half a minute per gain on two cores. Prints the gains whenever more goals are reached.
+Measures how every gain changes the values of the goals and the nine curves of the score, in the walks of the shipped
+study `likeness`: three speeds, two contact models, without and with the style. Searches the gains that would be best if
+these changes added up, and walks with them. A round takes about a minute per gain on two cores. Prints the gains
+whenever they are better.
 
-SCENARIO is `walk`, `normative` or a file; default: `walk`. A GAIN is a part of a name, such as `swing`; without any,
-all of GAINS are fitted.
+A GAIN is a part of a name, such as `swing`; without any, all of GAINS are fitted.
 """
 
 import sys
 from collections.abc import Mapping, Sequence
-from itertools import batched, product
+from dataclasses import replace
+from itertools import batched
 from typing import NamedTuple
 
 import numpy as np
 from dask.distributed import Client, Future
-from likeness import CONTACT, FORWARD, GAIT, GOALS, Goal, Row
+from likeness import CONTACT, FORWARD, GAIT, GOALS, STUDY, Goal, Row
 from scipy.optimize import minimize
 from scipy.special import expit
 
@@ -26,24 +27,27 @@ from humanwalk.measures.walk_measures import Walk
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, numbers_of
 from humanwalk.run.simulate import simulate
-from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.scenario import Scenario
 from humanwalk.study.cluster import local_client
+from humanwalk.study.design import Point
 from humanwalk.study.row import measured
+from humanwalk.study.study import load_study
 
-CASES = tuple(product(("point", "hydroelastic"), (0.9, 1.2, 1.4)))
-"""Contact model and speed [m/s] of the walks."""
-
-DURATION = "15"
+DURATION = 15.0
 """Of a walk [s]: the goals depend on its worst strides."""
 
 LARGEST_CHANGES = (1.0, 0.5, 0.25)
-"""Largest changes of the gains in a round, in steps: the next one is tried if the one before reaches no more goals."""
+"""Largest changes of the gains in a round, in steps: the next one is tried if the one before is no better."""
 
 STEEPNESS = 2.0
 """Slope of the smooth loss of a goal at its limit, per distance of UNITS."""
 
-CHANGE_COST, SQUARE_COST, SCORE_GAIN = 0.15, 0.1, 0.4
-"""What a step of a gain costs, what its square costs, and what one percent of the score is worth [goals]."""
+CHANGE_COST, SQUARE_COST = 0.15, 0.1
+"""What a step of a gain costs, and what its square costs [goals]."""
+
+DISTANCE_COST, SCORE_GAIN = 0.1, 0.8
+"""What a goal costs per distance of UNITS by which it is missed, and what one percent of the mean score is worth
+[goals]."""
 
 EDGE = 0.125
 """Width of the smooth edge of the range within one standard deviation, in standard deviations."""
@@ -137,8 +141,8 @@ Walked = tuple[Row, Mapping[str, Array]]
 """A walk: its row of the study, and its mean strides less people's in standard deviations, by curve."""
 
 
-def walk(scenario: Scenario, contact: str, speed: float) -> Walked | None:
-    """A walk on a contact model at a speed [m/s]; None for one that fell or cannot be compared."""
+def walk(scenario: Scenario, case: Row) -> Walked | None:
+    """A walk and the values of its factors; None for one that fell or cannot be compared."""
     try:
         outcome = simulate(scenario)
         row = measured(outcome)
@@ -149,7 +153,6 @@ def walk(scenario: Scenario, contact: str, speed: float) -> Walked | None:
     steady = Walk.of(outcome.signals, scenario)
     bands = {curve: CURVES[curve].people(steady.pace.group, steady.pace.leg) for curve in SCORED}
     means = {curve: steady.strides(curve).mean(axis=0) for curve in SCORED}
-    case = {CONTACT: contact, FORWARD: speed, GAIT: row["style"]}
     return row | case, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
 
 
@@ -165,35 +168,43 @@ def miss(goal: Goal, values: Array, row: Row) -> float:
     return float(worst) / UNITS[goal.name]
 
 
-def count(walks: Sequence[Walked]) -> int:
+def goals_reached(walks: Sequence[Walked]) -> int:
     """Number of goals that are reached."""
     return sum(goal.reached(row) is True for row, _ in walks for goal in GOALS)
 
 
-class Fit:
-    """Walks as a function of the gains, in steps from their values in a scenario."""
+def merit(walks: Sequence[Walked]) -> float:
+    """Goals that are reached, less the distance of the others, plus the mean score [goals]."""
+    distance = sum(
+        max(miss(goal, np.array(goal.values(row)), row), 0.0)
+        for row, _ in walks
+        for goal in GOALS
+        if goal.name in UNITS and goal.reached(row) is not None
+    )
+    score = np.mean([100.0 * row["likeness.score"] for row, _ in walks])
+    return float(goals_reached(walks) - DISTANCE_COST * distance + SCORE_GAIN * score)
 
-    def __init__(self, scenario: str, parts: Sequence[str], client: Client) -> None:
+
+class Fit:
+    """The walks of the study as a function of the gains, in steps from their values there."""
+
+    def __init__(self, parts: Sequence[str], client: Client) -> None:
         """Prepare the fit.
 
         Args:
-            scenario: name or path.
             parts: of the names of the gains that are fitted; all without any.
             client: of the workers.
 
         Raises:
-            ParameterError: the scenario cannot be used, or no gain has such a name.
+            ParameterError: no gain has such a name.
         """
-        self.scenario, self.client = scenario, client
+        self._study, self._client = load_study(STUDY), client
         self.names = [name for name in GAINS if not parts or any(part in name for part in parts)]
         if not self.names:
             raise ParameterError(
                 f"GAIN: {' '.join(parts)}; allowed: parts of the names in GAINS; take swing or torque_unit"
             )
-        start = {name: value for name, value, _ in numbers_of(load_scenario(scenario))}
-        missing = [name for name in self.names if name not in start]
-        if missing:
-            raise ParameterError(f"SCENARIO: {scenario} has no {missing[0]}; allowed: balanced walks; take walk")
+        start = {name: value for name, value, _ in numbers_of(self._study.scenario)}
         self._start = np.array([start[name] for name in self.names])
         self._step, self._low, self._high = np.array([GAINS[name] for name in self.names]).T
 
@@ -202,21 +213,23 @@ class Fit:
         values = np.clip(self._start + steps * self._step, self._low, self._high)
         return dict(zip(self.names, values.tolist(), strict=True))
 
-    def walks(self, *points: Array) -> list[list[Walked] | None]:
-        """The walks of all cases at every point; None for a point at which one fell."""
-        jobs = [self._submit(point, contact, speed) for point in points for contact, speed in CASES]
+    def walks(self, *steps: Array) -> list[list[Walked] | None]:
+        """The walks of the study at every number of steps; None where one fell."""
+        points = self._study.points
+        jobs = [self._submit(change, point) for change in steps for point in points]
         with counted_progress("walks", estimate_period=600.0) as progress:
-            found = list(progress.track((job.result() for job in jobs), total=len(jobs), description=self.scenario))
-        return [None if None in cases else list(cases) for cases in batched(found, len(CASES))]
+            found = list(progress.track((job.result() for job in jobs), total=len(jobs), description=STUDY))
+        return [None if None in walks else list(walks) for walks in batched(found, len(points))]
 
     def signs(self, point: Array) -> Array:
         """Directions in which a step of each gain stays within its range."""
         return np.where(self._start + (point + 1.0) * self._step <= self._high, 1.0, -1.0)
 
-    def _submit(self, point: Array, contact: str, speed: float) -> Future[Walked | None]:
-        gains = {name: repr(value) for name, value in self.gains(point).items()}
-        walks = load_scenario(self.scenario, {**gains, "duration": DURATION, "contact": contact, FORWARD: str(speed)})
-        return self.client.submit(walk, walks, contact, speed, pure=False)
+    def _submit(self, steps: Array, point: Point) -> Future[Walked | None]:
+        changed = {**self._study.set, **self.gains(steps), "duration": DURATION}
+        scenario = replace(self._study, set=changed).scenario_at(point)
+        case = {name: self._study.value_at(point, name) for name in (CONTACT, FORWARD, GAIT)}
+        return self._client.submit(walk, scenario, case, pure=False)
 
 
 class Case(NamedTuple):
@@ -256,7 +269,7 @@ class Case(NamedTuple):
         )
 
     def loss(self, steps: Array) -> tuple[float, float]:
-        """Number of goals that are missed, with smooth limits, and change of the score [%]."""
+        """Goals that are missed, with smooth limits and the cost of their distance, and change of the score [%]."""
         more = {
             name: share_within(curve + steps @ slopes) - share_within(curve)
             for name, (curve, slopes) in self.curves.items()
@@ -267,7 +280,8 @@ class Case(NamedTuple):
             if goal.name in UNITS and goal.reached(self.row) is not None:
                 value, slopes = self.values[goal.name]
                 changed = value + share_changes.get(goal.name, steps @ slopes)
-                missed += float(expit(STEEPNESS * miss(goal, changed, self.row)))
+                distance = miss(goal, changed, self.row)
+                missed += float(expit(STEEPNESS * distance)) + DISTANCE_COST * max(distance, 0.0)
         return missed, float(np.mean(list(more.values())))
 
 
@@ -302,15 +316,15 @@ def _share_changes(more: Mapping[str, float]) -> dict[str, Array]:
     return means | {"angles within 1 SD: hip, knee, ankle [%]": changes["angles"]}
 
 
-def main(scenario: str = "walk", *parts: str) -> None:
+def main(*parts: str) -> None:
     """Fit the gains whose names contain one of the parts, and print them."""
     with local_client() as client:
-        fit = Fit(scenario, parts, client)
+        fit = Fit(parts, client)
         point = np.zeros(len(fit.names))
         (base,) = fit.walks(point)
         if not base:
-            raise ParameterError(f"SCENARIO: a walk of {scenario} falls; allowed: those that walk; change its gains")
-        print(f"{count(base)} goals\n", flush=True)
+            raise ParameterError(f"{STUDY}: one of its walks falls; allowed: a study whose walks are completed")
+        print(f"{goals_reached(base)} goals, merit {merit(base):.2f}\n", flush=True)
         is_better = True
         while is_better:
             signs = fit.signs(point)
@@ -321,11 +335,11 @@ def main(scenario: str = "walk", *parts: str) -> None:
             for largest in LARGEST_CHANGES:
                 trial = point + best_steps(cases, point.size, largest)
                 (found,) = fit.walks(trial)
-                if found and count(found) > count(base):
+                if found and merit(found) > merit(base):
                     point, base, is_better = trial, found, True
                     for name, value in fit.gains(point).items():
                         print(f"{name}: {value:.4g}")
-                    print(f"{count(base)} goals\n", flush=True)
+                    print(f"{goals_reached(base)} goals, merit {merit(base):.2f}\n", flush=True)
                     break
 
 

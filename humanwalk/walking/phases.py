@@ -32,6 +32,9 @@ STOP_TURN = 0.0265
 """Commanded turn in the time of a step up to which a step is the last one [rad]."""
 
 
+NO_PREVIEW = Preview()
+
+
 class PhaseTransitions:
     """Transitions between the phases; the arguments are those of `StepPlanner`."""
 
@@ -157,7 +160,7 @@ class PhaseTransitions:
             ground=state.ground,
             caution=caution,
         )
-        return self._look_ahead(landed, command, state.preview.ahead) if is_stepping else landed
+        return self._look_ahead(landed, command, state.preview) if is_stepping else landed
 
     def _catch(self, state: PlannerState, command: Command, dcm: complex) -> PlannerState:
         """Begin a careful step from standing, on the foot with the smaller lateral distance to the DCM."""
@@ -184,12 +187,18 @@ class PhaseTransitions:
         apart = (left.position - right.position) / cmath.exp(1j * heading) - 1j * p.placement.step_width
         return abs(apart) <= p.stand_spread and p.support.outside(dcm, right.position, heading, left.position) == 0.0
 
-    def _look_ahead(self, state: PlannerState, command: Command, ahead: float = 0.0) -> PlannerState:
-        """The state with the next footholds, and with caution, duration and speed of the step that suit them."""
-        gait, preview = self._preview(state, command, ahead)
+    def _look_ahead(self, state: PlannerState, command: Command, before: Preview = NO_PREVIEW) -> PlannerState:
+        """The state with the next footholds, and with caution, duration and speed of the step that suit them.
+
+        Args:
+            state: State at the beginning of a step.
+            command: The command.
+            before: What was planned in the step before.
+        """
+        gait, preview = self._preview(state, command, before)
         careful = self._cautious(state, command, preview)
         if careful is not state:
-            state, (gait, preview) = careful, self._preview(careful, command, ahead)
+            state, (gait, preview) = careful, self._preview(careful, command, before)
         feet = (state.old_foot, state.stance_foot, *preview.footholds)
         swings = [(feet[k], feet[k + 2]) for k in range(STEPS)]
         rises = [goal.ground - start.ground for start, goal in swings]
@@ -223,11 +232,12 @@ class PhaseTransitions:
             return state
         return state._replace(caution=caution, timing=self._parameters.timing.at_speed(command.forward, caution))
 
-    def _preview(self, state: PlannerState, command: Command, ahead: float = 0.0) -> tuple[PeriodicGait, Preview]:
+    def _preview(self, state: PlannerState, command: Command, before: Preview) -> tuple[PeriodicGait, Preview]:
         """The desired gait, and its next footholds."""
         gait = desired_gait(state, command, self._parameters)
         stance = (state.stance_foot, state.stance, state.heading)
-        return gait, self._footholds.preview(state.ground, *stance, gait, ahead)
+        planned = before.footholds[1] if before.footholds else None
+        return gait, self._footholds.preview(state.ground, *stance, gait, before.ahead, planned)
 
     def _heights(self, state: PlannerState, preview: Preview) -> Iterator[float]:
         """Rises of the next steps above the plane of the foot behind, and heights of what they clear [m]."""

@@ -188,7 +188,14 @@ class FootholdPlanner:
         )
 
     def preview(
-        self, ground: Ground, stance: Foothold, side: Side, heading: float, gait: PeriodicGait, ahead: float = 0.0
+        self,
+        ground: Ground,
+        stance: Foothold,
+        side: Side,
+        heading: float,
+        gait: PeriodicGait,
+        ahead: float = 0.0,
+        planned: Foothold | None = None,
     ) -> Preview:
         """The next footholds of a gait.
 
@@ -199,6 +206,7 @@ class FootholdPlanner:
             heading: Its heading [rad].
             gait: The desired gait.
             ahead: Distance of the stance foot ahead of its place in the gait [m].
+            planned: The next foothold in the plan before, whose face is preferred: the DCM goes there.
         """
         footholds, moves = [], []
         length = desired_length = first_ahead = 0.0
@@ -209,7 +217,8 @@ class FootholdPlanner:
             shortened = complex(clip(step.real - ahead, -longest, longest), step.imag)
             desired = stance.position + shortened * direction
             heading += gait.turn
-            foothold = self.nearest(ground, desired, heading, stance, side, direction)
+            current, planned = planned.face if planned else None, None
+            foothold = self.nearest(ground, desired, heading, stance, side, direction, current)
             moves.append((foothold.position - desired) + (shortened - step) * direction)
             footholds.append(foothold)
             length += ((foothold.position - desired) / direction + shortened).real

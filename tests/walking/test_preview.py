@@ -56,6 +56,22 @@ def test_on_boxes_longer_than_a_step_the_lead_is_made_up_for_or_free(free_lead: 
     assert [foothold.face.lower[0] for foothold in footholds] == pytest.approx(boxes)
 
 
+@pytest.mark.parametrize(
+    "length, free, above, below",
+    [(0.30, 0.0, 0.0, 0.0), (0.38, 0.0, 0.0, -0.18), (0.40, -0.18, 0.0, -0.18), (0.45, -0.18, -0.18, -0.18)],
+)
+def test_the_next_foothold_keeps_the_face_of_the_plan_before_unless_another_is_far_nearer(
+    length: float, free: float, above: float, below: float
+) -> None:
+    """Before the first step down; else the DCM, which goes to the planned foothold, is that of another step."""
+    ground = Course(pieces=(Flat(length=0.5), Stairs(rise=0.18, tread=0.29, number=12, direction="down")), run_up=0.5)
+    stance = Foothold.on(ground, 0.55 + 0.08j)
+    for place, height in ((None, free), (0.7 - 0.08j, above), (1.06 - 0.08j, below)):
+        planned = None if place is None else Foothold.on(ground, place)
+        preview = PLANNER.preview(ground, stance, "Left", 0.0, gait(length), planned=planned)
+        assert preview.footholds[0].ground == pytest.approx(height)
+
+
 def test_on_ice_the_steps_are_short() -> None:
     ice = preview_on(Plane(friction_coefficient=0.15), 0.5)
     assert ice.pace < 0.6
