@@ -41,7 +41,7 @@
   };
 
   for (const name of [...Object.keys(picture.views), "free"]) camera.add(new Option(name === "free" ? name : `${name} view`, name));
-  camera.addEventListener("change", () => { if (camera.value !== "free") picture.view(camera.value); });
+  camera.addEventListener("change", () => picture.view(camera.value));
   picture.onTurn(() => { camera.value = "free"; });
   arrangement.hidden = picture.runs < 2;
   arrangement.addEventListener("change", () => picture.arrange(arrangement.value));

@@ -1,6 +1,9 @@
 // The picture: loads the recordings into Meshcat's viewer, extends the floor, places cameras and walkers.
 const picture = (() => {
   const BESIDE = 1.3;
+  // Height above all ground, height by which ground may rise before it lifts the camera [m], and lift per rise beyond
+  // it: from half as high again the camera sees the feet behind the edge of a step.
+  const SKY = 1000, UNEVEN = 0.1, LIFT = 1.5;
 
   const recordings = [...document.querySelectorAll("script.recording")];
   const find = (...path) => viewer.scene_tree.find(path).object;
@@ -43,6 +46,8 @@ const picture = (() => {
   };
 
   const {views} = JSON.parse(document.getElementById("constants").textContent);
+  // The view in which the camera stays; none while it is free.
+  let chosen = null;
   let arrangement = "beside", across = [0, 1];
   // z is up in W and in every group, y in three.js.
   const up = ([x, y, z]) => [x, z, -y];
@@ -65,8 +70,24 @@ const picture = (() => {
     material.needsUpdate = true;
   }));
 
+  // Mean height of the first run's ground on two steps to both sides of a place, along a direction [m].
+  const ray = new THREE.Raycaster(), down = new THREE.Vector3(0, -1, 0);
+  const groundAround = (x, y, direction) => {
+    const ground = find("run0", "drake", "visualizer").children.filter(({name}) => name.startsWith("ground"));
+    const heights = [-0.6, -0.3, 0, 0.3, 0.6].map(along => {
+      const above = up([x + along * direction[0], y + along * direction[1], SKY]);
+      ray.set(new THREE.Vector3(...above), down);
+      return ray.intersectObjects(ground)[0]?.point.y ?? 0;
+    });
+    return heights.reduce((sum, height) => sum + height, 0) / heights.length;
+  };
+
+  // Ground that rises lifts the camera: ahead of a walker on stairs it would be inside them.
   const look = (position, target) => {
-    viewer.camera.position.set(...up(position));
+    const [x, y, z] = position, [dx, dy] = [x - target[0], y - target[1]], distance = Math.hypot(dx, dy);
+    viewer.scene.updateMatrixWorld();
+    const lift = LIFT * Math.max(groundAround(x, y, [dx / distance, dy / distance]) - UNEVEN, 0);
+    viewer.camera.position.set(...up([x, y, z + lift]));
     viewer.controls.target.set(...up(target));
   };
 
@@ -76,11 +97,15 @@ const picture = (() => {
     show(time) {
       viewer.animator.seek(time);
       place();
+      if (chosen) look(chosen.position, chosen.target);
       viewer.set_dirty();
     },
     look,
+    // Of a name without a camera nothing moves.
     view(name) {
-      const {position, target} = views[name];
+      chosen = views[name];
+      if (!chosen) return;
+      const {position, target} = chosen;
       look(position, target);
       // Walkers side by side do not hide each other.
       const [x, y] = [position[0] - target[0], position[1] - target[1]], distance = Math.hypot(x, y);
@@ -95,6 +120,11 @@ const picture = (() => {
       place();
       viewer.set_dirty();
     },
-    onTurn(action) { viewer.controls.addEventListener("start", action); },
+    onTurn(action) {
+      viewer.controls.addEventListener("start", () => {
+        chosen = null;
+        action();
+      });
+    },
   };
 })();

@@ -9,7 +9,10 @@ from humanwalk.body.shapes import Vector3
 
 @dataclass(frozen=True)
 class Camera:
-    """Camera in W translated to the pelvis: x and y count from the pelvis, z from the ground there [m]."""
+    """Camera in W translated to the pelvis: x and y count from the pelvis, z from the ground there [m].
+
+    The page lifts it where the ground below it is higher (replay_scene.js).
+    """
 
     position: Vector3
     target: Vector3

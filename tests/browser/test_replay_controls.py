@@ -105,6 +105,24 @@ def test_a_camera_preset_places_the_camera(tab: Any, name: str) -> None:
     assert tab.evaluate("() => viewer.camera.position.toArray()") == pytest.approx([x, z, -y], abs=0.01)
 
 
+def test_ground_that_rises_lifts_the_camera_out_of_it(tab: Any) -> None:
+    tab.evaluate(
+        """() => {
+            const step = new THREE.Mesh(new THREE.BoxGeometry(4, 4, 1));
+            step.name = "ground_test";
+            step.position.set(5, 0, 0.5);
+            viewer.scene_tree.find(["run0", "drake", "visualizer"]).object.add(step);
+        }"""
+    )
+    heights = {}
+    for name in FIXED:
+        tab.locator("#camera").select_option(name)
+        heights[name] = tab.evaluate("() => viewer.camera.position.y") - FIXED[name].position[2]
+    tab.evaluate("() => viewer.scene.getObjectByName('ground_test').removeFromParent()")
+    assert heights.pop("front") > 1.0
+    assert all(lift == pytest.approx(0.0, abs=1e-9) for lift in heights.values())
+
+
 def test_turning_the_picture_makes_the_camera_free(tab: Any) -> None:
     tab.locator("#camera").select_option("side")
     before = tab.evaluate("() => viewer.camera.position.toArray()")
