@@ -64,7 +64,7 @@ class StepPlacement:
     """Time constant of the low-pass filter of the heights of a swing whose foothold moves to another face: a leg that
     is lifted faster throws the body up."""
 
-    freeze_time: float = quantity(0.04, "s", 0.0, 0.5)
+    freeze_time: float = quantity(0.05, "s", 0.0, 0.5)
     """The foothold is constant for this long before touchdown."""
 
     face_freeze_time: float = quantity(0.15, "s", 0.0, 0.5)
