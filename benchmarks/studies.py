@@ -161,6 +161,13 @@ def balance_standing() -> str:
     )
 
 
+def balance_weight_shift() -> str:
+    def pushed(row: Row) -> str:
+        return f"{row[PUSH_IMPULSE]:g} N s at {row[PUSH_TIME]:.1f} s"
+
+    return study_section("balance_weight_shift", lambda rows: _pushes(rows, "push", pushed, _up_or_end))
+
+
 def subjects_pushes() -> str:
     return study_section("subjects_pushes", lambda rows: _pushes(rows, "body", lambda row: row["body"], _up_or_end))
 
@@ -355,6 +362,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_pushes_60,
         push_random,
         balance_standing,
+        balance_weight_shift,
         balance_seeds,
         balance_invariance,
     ),

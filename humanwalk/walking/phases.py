@@ -79,7 +79,7 @@ class PhaseTransitions:
         timing = state.timing
         turn = abs(command.turn) * self._parameters.timing.step
         is_moving = abs(command.velocity) > self._parameters.stop_speed or turn > STOP_TURN
-        if not state.is_stepping and self._is_lost(state, command, dcm):
+        if not state.is_stepping and self._is_lost(state, dcm):
             return self._catch(state, command, dcm)
         if state.phase is Phase.STAND and is_moving:
             state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
@@ -174,12 +174,9 @@ class PhaseTransitions:
         )
         return self._look_ahead(careful, command)
 
-    def _is_lost(self, state: PlannerState, command: Command, dcm: complex) -> bool:
-        """Whether standing cannot hold the body; in the weight shift it may lean in the commanded direction."""
-        support = self._parameters.support
-        outside = support.outside(dcm, state.right.position, state.heading, state.left.position)
-        leans = (outside * (command.velocity * state.direction).conjugate()).real > 0.0
-        return outside != 0.0 and not (state.phase is Phase.WEIGHT_SHIFT and leans)
+    def _is_lost(self, state: PlannerState, dcm: complex) -> bool:
+        """Whether the DCM is outside the base of support of both feet, where standing cannot hold the body."""
+        return self._parameters.support.outside(dcm, state.right.position, state.heading, state.left.position) != 0.0
 
     def _can_stand(self, right: Foothold, left: Foothold, heading: float, dcm: complex) -> bool:
         """Whether the feet are side by side, and their base of support contains the DCM."""

@@ -35,6 +35,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("balance_pushes", 40),
         ("balance_pushes_60", 10),
         ("balance_standing", 40),
+        ("balance_weight_shift", 72),
         ("balance_invariance", 4),
         ("push_random", 100),
         ("thesis_step_height", 9),

@@ -156,23 +156,18 @@ def test_the_walker_does_not_stop_with_a_foot_on_each_of_two_treads(direction: L
 @pytest.mark.parametrize(
     "velocity, stance", [(0.8 + 0.05j, "Left"), (-0.3 - 0.05j, "Right"), (0.5j, "Left"), (-0.5j, "Right")]
 )
-@pytest.mark.parametrize("phase", [Phase.STAND, Phase.WEIGHT_SHIFT])
+@pytest.mark.parametrize(
+    "phase, command", [(Phase.STAND, STOP), (Phase.WEIGHT_SHIFT, STOP), (Phase.WEIGHT_SHIFT, WALK)]
+)
 def test_a_push_in_standing_leads_to_a_careful_step_on_the_foot_nearer_to_the_dcm(
-    phase: Phase, velocity: complex, stance: str
+    phase: Phase, command: Command, velocity: complex, stance: str
 ) -> None:
     standing = LEVEL.start(BODY, 0.0)._replace(phase=phase)
-    assert advance(LEVEL, standing, replace(BODY, com_velocity=0.1 * velocity), STOP).phase is phase
-    caught = advance(LEVEL, standing, replace(BODY, com_velocity=velocity), STOP)
+    assert advance(LEVEL, standing, replace(BODY, com_velocity=0.1 * velocity), command).phase is phase
+    caught = advance(LEVEL, standing, replace(BODY, com_velocity=velocity), command)
     assert (caught.phase, caught.elapsed, caught.stance, caught.steps) == (Phase.DOUBLE_SUPPORT, 0.0, stance, 0)
     assert (caught.caution, caught.timing.step) == (1.0, CAREFUL)
     assert len(caught.preview.footholds) > 0
-
-
-def test_in_the_weight_shift_the_body_may_lean_into_the_commanded_direction() -> None:
-    shifting = LEVEL.start(BODY, 0.0)._replace(phase=Phase.WEIGHT_SHIFT)
-    leaning = replace(BODY, com_velocity=0.8 + 0j)
-    assert advance(LEVEL, shifting, leaning, WALK).phase is Phase.WEIGHT_SHIFT
-    assert advance(LEVEL, shifting, leaning, Command(-0.3)).phase is Phase.DOUBLE_SUPPORT
 
 
 def test_only_a_preview_of_irregular_footholds_keeps_the_command_for_which_it_was_planned() -> None:
