@@ -32,6 +32,10 @@ STOP_TURN = 0.0265
 """Commanded turn in the time of a step up to which a step is the last one [rad]."""
 
 
+SHIFT_MARGIN = 0.01
+"""Distance from the base of support up to which the DCM is held in the weight shift [m] (our choice): at its end the
+DCM of a walk at 1 m/s is at the front of the base of support."""
+
 NO_PREVIEW = Preview()
 
 
@@ -176,7 +180,8 @@ class PhaseTransitions:
 
     def _is_lost(self, state: PlannerState, dcm: complex) -> bool:
         """Whether the DCM is outside the base of support of both feet, where standing cannot hold the body."""
-        return self._parameters.support.outside(dcm, state.right.position, state.heading, state.left.position) != 0.0
+        outside = self._parameters.support.outside(dcm, state.right.position, state.heading, state.left.position)
+        return abs(outside) > (SHIFT_MARGIN if state.phase is Phase.WEIGHT_SHIFT else 0.0)
 
     def _can_stand(self, right: Foothold, left: Foothold, heading: float, dcm: complex) -> bool:
         """Whether the feet are side by side, and their base of support contains the DCM."""
