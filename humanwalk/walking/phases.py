@@ -33,10 +33,11 @@ STOP_TURN = 0.0265
 
 
 SHIFT_MARGIN = 0.01
-"""Distance from the base of support up to which the DCM is held in the weight shift [m] (our choice): at its end the
-DCM of a walk at 1 m/s is at the front of the base of support."""
+"""Distance by which the DCM may leave the base of support in the weight shift [m] (our choice): at the end of the
+weight shift before a walk at 1 m/s it is at the front of the base of support."""
 
 NO_PREVIEW = Preview()
+"""The plan before the first step."""
 
 
 class PhaseTransitions:
@@ -238,8 +239,8 @@ class PhaseTransitions:
         """The desired gait, and its next footholds."""
         gait = desired_gait(state, command, self._parameters)
         stance = (state.stance_foot, state.stance, state.heading)
-        planned = before.footholds[1] if before.footholds else None
-        return gait, self._footholds.preview(state.ground, *stance, gait, before.ahead, planned)
+        current = before.footholds[1].face if before.footholds else None
+        return gait, self._footholds.preview(state.ground, *stance, gait, before.ahead, current)
 
     def _heights(self, state: PlannerState, preview: Preview) -> Iterator[float]:
         """Rises of the next steps above the plane of the foot behind, and heights of what they clear [m]."""

@@ -195,7 +195,7 @@ class FootholdPlanner:
         heading: float,
         gait: PeriodicGait,
         ahead: float = 0.0,
-        planned: Foothold | None = None,
+        current: Face | None = None,
     ) -> Preview:
         """The next footholds of a gait.
 
@@ -206,19 +206,18 @@ class FootholdPlanner:
             heading: Its heading [rad].
             gait: The desired gait.
             ahead: Distance of the stance foot ahead of its place in the gait [m].
-            planned: The next foothold in the plan before, whose face is preferred: the DCM goes there.
+            current: Face of the next foothold in the plan before; it is preferred, because the DCM goes there.
         """
         footholds, moves = [], []
         length = desired_length = first_ahead = 0.0
-        for _ in range(STEPS):
+        for face in (current, *(None,) * (STEPS - 1)):
             direction = cmath.exp(1j * heading)
             step = gait.displacement.on(side)
             longest = self.pacing.longest_step(stance.face, self.com_height, abs(step.imag))
             shortened = complex(clip(step.real - ahead, -longest, longest), step.imag)
             desired = stance.position + shortened * direction
             heading += gait.turn
-            current, planned = planned.face if planned else None, None
-            foothold = self.nearest(ground, desired, heading, stance, side, direction, current)
+            foothold = self.nearest(ground, desired, heading, stance, side, direction, face)
             moves.append((foothold.position - desired) + (shortened - step) * direction)
             footholds.append(foothold)
             length += ((foothold.position - desired) / direction + shortened).real

@@ -14,7 +14,7 @@ from humanwalk.walking.command import Command
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import divergent_component
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.phases import STOP_TURN, PhaseTransitions
+from humanwalk.walking.phases import SHIFT_MARGIN, STOP_TURN, PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
@@ -168,6 +168,16 @@ def test_a_push_in_standing_leads_to_a_careful_step_on_the_foot_nearer_to_the_dc
     assert (caught.phase, caught.elapsed, caught.stance, caught.steps) == (Phase.DOUBLE_SUPPORT, 0.0, stance, 0)
     assert (caught.caution, caught.timing.step) == (1.0, CAREFUL)
     assert len(caught.preview.footholds) > 0
+
+
+@pytest.mark.parametrize("phase, margin", [(Phase.STAND, 0.0), (Phase.WEIGHT_SHIFT, SHIFT_MARGIN)])
+def test_the_dcm_may_leave_the_base_of_support_by_a_margin_in_the_weight_shift_only(
+    phase: Phase, margin: float
+) -> None:
+    standing = LEVEL.start(BODY, 0.0)._replace(phase=phase)
+    for outside, expected in ((margin - 1e-4, phase), (margin + 1e-4, Phase.DOUBLE_SUPPORT)):
+        ahead = replace(BODY, com=BODY.right.position.real + PARAMETERS.support.front + outside + 0j)
+        assert advance(LEVEL, standing, ahead, STOP).phase is expected
 
 
 def test_only_a_preview_of_irregular_footholds_keeps_the_command_for_which_it_was_planned() -> None:

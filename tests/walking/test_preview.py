@@ -63,12 +63,12 @@ def test_on_boxes_longer_than_a_step_the_lead_is_made_up_for_or_free(free_lead: 
 def test_the_next_foothold_keeps_the_face_of_the_plan_before_unless_another_is_far_nearer(
     length: float, free: float, above: float, below: float
 ) -> None:
-    """Before the first step down; else the DCM, which goes to the planned foothold, is that of another step."""
+    """Before the first step down: the DCM goes to the foothold that was planned."""
     ground = Course(pieces=(Flat(length=0.5), Stairs(rise=0.18, tread=0.29, number=12, direction="down")), run_up=0.5)
     stance = Foothold.on(ground, 0.55 + 0.08j)
-    for place, height in ((None, free), (0.7 - 0.08j, above), (1.06 - 0.08j, below)):
-        planned = None if place is None else Foothold.on(ground, place)
-        preview = PLANNER.preview(ground, stance, "Left", 0.0, gait(length), planned=planned)
+    floor, tread = (Foothold.on(ground, place).face for place in (0.7 - 0.08j, 1.06 - 0.08j))
+    for face, height in ((None, free), (floor, above), (tread, below)):
+        preview = PLANNER.preview(ground, stance, "Left", 0.0, gait(length), current=face)
         assert preview.footholds[0].ground == pytest.approx(height)
 
 
