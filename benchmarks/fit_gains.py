@@ -177,12 +177,12 @@ def goals_reached(walks: Sequence[Walked]) -> int:
 
 
 def told(walks: Sequence[Walked] | None) -> str:
-    """What walks reach, in words."""
+    """Goals and merit of walks, as text."""
     return f"{goals_reached(walks)} goals, merit {merit(walks):.2f}" if walks else "a walk fell or cannot be compared"
 
 
 def merit(walks: Sequence[Walked]) -> float:
-    """Goals that are reached, less the distance of the others, plus the mean score [goals]."""
+    """Goals reached, less the cost of the distances of the others, plus the worth of the mean score [goals]."""
     distance = sum(
         max(miss(goal, np.array(goal.values(row)), row), 0.0)
         for row, _ in walks

@@ -1,9 +1,11 @@
 // The picture: loads the recordings into Meshcat's viewer, extends the floor, places cameras and walkers.
 const picture = (() => {
   const BESIDE = 1.3;
-  // Height above all ground, height by which ground may rise before it lifts the camera [m], and lift per rise beyond
-  // it: from half as high again the camera sees the feet behind the edge of a step.
-  const SKY = 1000, UNEVEN = 0.1, LIFT = 1.5;
+  // A height above all ground [m].
+  const SKY = 1000;
+  // Ground that rises by more than UNEVEN [m] lifts the camera by LIFT times the rest. With a factor of 1 the edges of
+  // stairs hide the feet.
+  const UNEVEN = 0.1, LIFT = 1.5;
 
   const recordings = [...document.querySelectorAll("script.recording")];
   const find = (...path) => viewer.scene_tree.find(path).object;
@@ -70,7 +72,8 @@ const picture = (() => {
     material.needsUpdate = true;
   }));
 
-  // Mean height of the first run's ground on two steps to both sides of a place, along a direction [m].
+  // Mean height of the first run's ground within 0.6 m of a place, along a direction [m]: about two steps of stairs.
+  // A camera that followed every single step would jump.
   const ray = new THREE.Raycaster(), down = new THREE.Vector3(0, -1, 0);
   const groundAround = (x, y, direction) => {
     const ground = find("run0", "drake", "visualizer").children.filter(({name}) => name.startsWith("ground"));
@@ -101,7 +104,7 @@ const picture = (() => {
       viewer.set_dirty();
     },
     look,
-    // Of a name without a camera nothing moves.
+    // A free camera has no view, and stays where it is.
     view(name) {
       chosen = views[name];
       if (!chosen) return;
