@@ -212,7 +212,8 @@ class Fit:
             raise ParameterError(
                 f"GAIN: {' '.join(parts)}; allowed: parts of the names in GAINS; take swing or torque_unit"
             )
-        start = {name: value for name, value, _ in numbers_of(self._study.scenario)}
+        first = self._study.scenario_at(self._study.points[0])
+        start = {name: value for name, value, _ in numbers_of(first)}
         self._start = np.array([start[name] for name in self.names])
         self._step, self._low, self._high = np.array([GAINS[name] for name in self.names]).T
 
