@@ -104,6 +104,7 @@ GAINS: Mapping[str, Gain] = {
     PROGRAM + "com_weight": Gain(100.0, 150.0, 1500.0),
     PROGRAM + "com_height.weight": Gain(70.0, 100.0, 600.0),
     PROGRAM + "torque_unit": Gain(1.0, 2.0, 20.0),
+    PROGRAM + "unloading_force": Gain(0.7, 1.5, 10.0),
     PROGRAM + "force_pivot.height": Gain(0.15, 0.1, 1.2),
     PROGRAM + "force_pivot.unit": Gain(1.2, 2.0, 20.0),
     PROGRAM + "heel_off.weight": Gain(12.0, 15.0, 150.0),

@@ -105,7 +105,7 @@ def make_walk(
 
 @pytest.fixture(scope="session")
 def plant() -> MultibodyPlant:
-    """The finalised reference human; it holds no state, tests make contexts of their own."""
+    """The finalized default human; it holds no state, tests make contexts of their own."""
     return kinematics_plant(Subject())
 
 

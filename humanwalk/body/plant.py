@@ -26,7 +26,7 @@ def add_human(plant: MultibodyPlant, subject: Subject) -> ModelInstanceIndex:
     parser = Parser(plant)
     parser.SetStrictParsing()
     register_package(parser.package_map())
-    if subject == Subject():
+    if subject == Subject(sex="unspecified"):
         (instance,) = parser.AddModelsFromUrl(HUMAN_URL)
     else:
         (instance,) = parser.AddModelsFromString(to_sdf(subject.skeleton, subject.look), "sdf")

@@ -43,8 +43,8 @@ class Subject:
     stature: float = quantity(REFERENCE_STATURE, "m", *STATURE_RANGE_M)
     """Standing height (thesis 3.3.1: 1.75 m)."""
 
-    sex: Literal["unspecified", "female", "male"] = "unspecified"
-    """Proportions: unspecified is the thesis' body; female and male are those of de Leva (1996)."""
+    sex: Literal["male", "female", "unspecified"] = "male"
+    """Proportions: male and female are those of de Leva (1996); unspecified is the thesis' body."""
 
     age: float = quantity(30.0, "years", MIN_AGE, 100.0)
     """Age; below 18 the proportions are those of a girl or boy, after Jensen (1989)."""

@@ -115,9 +115,8 @@ class SolesOnGround(NamedTuple):
         feet = [reference.foot(side) for side in SIDES]
         load = np.array([foot.load for foot in feet])[soles.side]
         is_near = self.height[: load.size] < p.contact_height
-        least, largest = self._heel_limits(feet, is_near, GRAVITY * body.mass)
-        largest = np.minimum(p.max_contact_force * load, largest)
-        (points,) = np.nonzero(is_near & (largest > 0.0))
+        limits = self._limits(feet, is_near, GRAVITY * body.mass, p)
+        (points,) = np.nonzero(is_near & (limits[1] > 0.0))
         under = soles.body[points]
         J = body.J[under]
         # The velocity of a point is v + w x r.
@@ -127,23 +126,28 @@ class SolesOnGround(NamedTuple):
         share = np.maximum(load[points], MIN_LOAD)
         edges_W = np.sqrt(share)[:, None, None] * (friction_edges(mu, p.force_unit) @ R_SW)
         J_edges = (edges_W @ J_points).reshape(-1, J.shape[-1])
-        limits = np.array((np.minimum(least, largest)[points], largest[points])) / (p.force_unit * np.sqrt(share))
+        limits = limits[:, points] / (p.force_unit * np.sqrt(share))
         side = soles.side[points]
         on_ball = [i for i in np.unique(side).tolist() if feet[i].task is FootTask.HEEL_OFF]
         return Contacts(points, side, on_ball, self.p_W[points], limits, edges_W, J_edges)
 
-    def _heel_limits(self, feet: Sequence[FootReference], is_near: Mask, weight: float) -> Array:
-        """Least and largest force along each edge of the contact points [N], (2, k); unlimited but under a heel.
+    def _limits(self, feet: Sequence[FootReference], is_near: Mask, weight: float, p: WholeBodyParameters) -> Array:
+        """Least and largest force along each edge of the contact points [N], (2, k).
 
         Args:
             feet: in the order of SIDES.
             is_near: whether a contact point is near the ground, (k,).
             weight: of the body [N].
+            p: largest forces.
         """
-        limits = np.tile(((0.0,), (np.inf,)), is_near.size)
+        limits = np.tile(((0.0,), (p.max_contact_force,)), is_near.size)
         for i, foot in enumerate(feet):
-            heel = self.soles.is_heel & is_near & (self.soles.side == i)
-            limits[:, heel] = weight / (EDGES * max(heel.sum(), 1)) * np.array(foot.heel)[:, None]
+            near = is_near & (self.soles.side == i)
+            heel = near & self.soles.is_heel
+            if foot.load < 1.0:
+                limits[1, near] = p.unloading_force * foot.load * weight / (EDGES * max(near.sum(), 1))
+            heel_limits = weight / (EDGES * max(heel.sum(), 1)) * np.array(foot.heel)[:, None]
+            limits[:, heel] = np.minimum(heel_limits, limits[1, heel])
         return limits
 
 

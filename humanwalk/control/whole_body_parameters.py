@@ -50,7 +50,7 @@ class ForcePivot:
     height: float = quantity(1.0, "m", 0.0, 2.0)
     """Height above the center of mass."""
 
-    unit: float = quantity(2.85, "N", 0.5, 1e6)
+    unit: float = quantity(3.0, "N", 0.5, 1e6)
     """Part of the force of a foot across its line that costs as much as an acceleration error of 1 m/s2 with the weight
     1; the cost fades as the foot behind is unloaded."""
 
@@ -89,7 +89,7 @@ class WholeBodyParameters:
     """Weight of the center of pressure at the planned zero-moment point, per squared acceleration of the center of mass
     that would move it there. With `com_weight` alone the angular momentum of the swinging leg moves the pressure."""
 
-    com_height: TaskGains = critical(100.0, 275.0)
+    com_height: TaskGains = critical(100.0, 197.0)
     """Height of the center of mass."""
 
     stance: TaskGains = TaskGains(0.0, 39.0, 1000.0)
@@ -101,7 +101,7 @@ class WholeBodyParameters:
     heel_strike: TaskGains = critical(1500.0, 1000.0)
     """Rotation of a foot after heel strike."""
 
-    heel_off: TaskGains = critical(400.0, 27.0)
+    heel_off: TaskGains = critical(400.0, 30.0)
     """Pitch of a foot whose heel rises."""
 
     swing_position: TaskGains = critical(335.0, 38.5)
@@ -113,7 +113,7 @@ class WholeBodyParameters:
     swing_acceleration_limit: float = quantity(100.0, "m/s2", 10.0, 1000.0)
     """Maximum desired horizontal acceleration of the swing foot; limits the effect of a foothold that jumps."""
 
-    pelvis: TaskGains = critical(200.0, 2.05)
+    pelvis: TaskGains = critical(200.0, 1.85)
     """Rotation of the pelvis."""
 
     chest: TaskGains = critical(150.0, 13.0)
@@ -144,7 +144,7 @@ class WholeBodyParameters:
     contact_height: float = quantity(0.008, "m", 0.001, 0.05)
     """Height of a contact point above the ground from which on it carries no force."""
 
-    knee_margin: float = quantity(0.086, "rad", 0.0, 0.5)
+    knee_margin: float = quantity(0.1, "rad", 0.0, 0.5)
     """Flexion at which the knee's range ends here; a straight leg cannot be shortened."""
 
     rotation_radius: float = quantity(1.0, "m", 0.01, 10.0)
@@ -154,7 +154,7 @@ class WholeBodyParameters:
     """Force along an edge of a friction pyramid that costs as much as an acceleration error of 1 m/s2 with the weight 1
     (our choice); distributes the load over the contact points."""
 
-    torque_unit: float = quantity(4.0, "N m", 0.1, 1e6)
+    torque_unit: float = quantity(3.6, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
     (docs/likeness.md, "What makes the forces human")."""
@@ -164,6 +164,11 @@ class WholeBodyParameters:
 
     max_contact_force: float = quantity(1500.0, "N", 100.0, 1e5)
     """Maximum force along each edge (our choice): twice the weight of the body."""
+
+    unloading_force: float = quantity(3.0, "", 0.1, 100.0)
+    """Largest vertical force on a foot that is being unloaded, in body weights per load. The leading foot takes over
+    before the trailing foot leaves the ground (docs/likeness.md, "Unloading of the trailing foot, and de Leva's
+    body")."""
 
     joint_limit_stiffness: float = quantity(900.0, "1/s2", 0.0, 1e4)
     """Bound of a joint's acceleration toward its limit per distance (our choice): a critically damped stop with a time

@@ -21,10 +21,10 @@ ROUNDING = 1e-9
 class BaseOfSupport:
     """The part of a foot that the zero-moment point may use, relative to the ankle."""
 
-    center: float = quantity(0.041, "m", -0.05, 0.1)
+    center: float = quantity(0.046, "m", -0.05, 0.1)
     """Distance of the nominal zero-moment point ahead of the ankle."""
 
-    roll: float = quantity(0.096, "s", 0.0, 0.3)
+    roll: float = quantity(0.091, "s", 0.0, 0.3)
     """Distance by which the nominal zero-moment point moves forward in single support, per speed."""
 
     pivot: float = quantity(0.0655, "s", 0.0, 0.2)
@@ -38,7 +38,7 @@ class BaseOfSupport:
     back: float = quantity(0.04, "m", 0.0, 0.1)
     """Limit behind the ankle."""
 
-    ball: float = quantity(0.088, "m", 0.0, 0.2)
+    ball: float = quantity(0.0815, "m", 0.0, 0.2)
     """Lower limit ahead of the ankle while the heel is up."""
 
     front: float = quantity(0.2, "m", 0.0, 0.4)

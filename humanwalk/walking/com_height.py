@@ -14,7 +14,7 @@ RISE_SHARE, DESCENT_SHARE = 0.6, 0.8
 class ComHeight:
     """Height of the center of mass."""
 
-    walking: float = quantity(1.005, "", 0.8, 1.05)
+    walking: float = quantity(1.006, "", 0.8, 1.05)
     """Height at the top of the arcs in walking, relative to the height with straight legs."""
 
     standing: float = quantity(0.985, "", 0.8, 1.0)
@@ -23,11 +23,11 @@ class ComHeight:
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
-    amplitude: float = quantity(0.0048, "s2/m", 0.0, 0.05)
+    amplitude: float = quantity(0.0056, "s2/m", 0.0, 0.05)
     """Amplitude of the arcs per squared speed; the drop between two straight legs is proportional to the square of the
     step length."""
 
-    delay: float = quantity(0.027, "s", -0.3, 0.3)
+    delay: float = quantity(0.029, "s", -0.3, 0.3)
     """Time from touchdown to the lowest height."""
 
     lowering_time_constant: float = quantity(0.08, "s", 0.02, 2.0)

@@ -30,39 +30,39 @@ class Rollover(NamedTuple):
 class FootRockers:
     """Rolling over heel and ball."""
 
-    heel: float = quantity(0.132, "s", 0.02, 0.4)
+    heel: float = quantity(0.126, "s", 0.02, 0.4)
     """Time from touchdown until the foot is flat."""
 
     landing_load: float = quantity(0.16, "", 0.0, 1.0)
     """Least vertical force under the heel from touchdown until the foot is flat [body weights]. Without it the heel
     leaves the ground again after its impact: the planned pressure moves to the new foot over all of double support."""
 
-    ball: float = quantity(0.232, "s", 0.0, 0.3)
+    ball: float = quantity(0.233, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
     a walker on its toes cannot move the zero-moment point back."""
 
     descent: float = quantity(0.35, "s", 0.0, 0.6)
     """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
 
-    unloading: float = quantity(8.9, "1/s", 0.5, 1e4)
+    unloading: float = quantity(7.0, "1/s", 0.5, 1e4)
     """Rate at which the largest vertical force under the heel falls to zero at heel-off [body weights per second].
     If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness.md, "A heel that
     lands and leaves with its load")."""
 
-    pitch: float = quantity(1.265, "rad", 0.0, 1.7)
+    pitch: float = quantity(1.27, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 
     full_pitch_speed: float = quantity(1.36, "m/s", 0.1, 5.0)
     """Forward speed from which on the heel rises earliest and the pitch at toe-off is greatest."""
 
-    speed_exponent: float = quantity(0.7, "", 0.0, 2.0)
+    speed_exponent: float = quantity(0.67, "", 0.0, 2.0)
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
     too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness.md)."""
 
-    late_rise: float = quantity(0.95, "", 0.0, 1.0)
+    late_rise: float = quantity(0.89, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
-    toes: float = quantity(0.61, "rad", 0.0, 1.2)
+    toes: float = quantity(0.62, "rad", 0.0, 1.2)
     """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
     (docs/likeness.md, "What makes the forces human")."""
 

@@ -264,7 +264,7 @@ class PhaseTransitions:
         """A stance foot that has not touched the ground yet stands where it is now, not where its swing ended."""
         foot = body.foot(state.stance)
         is_landing = state.steps > 0 and 0.0 < state.elapsed <= self._parameters.rockers.heel
-        if foot.force >= self._parameters.timing.touchdown_force or not is_landing:
+        if foot.force >= self._parameters.timing.loaded_force or not is_landing:
             return state
         foothold = Foothold.on(state.ground, foot.position)
         return state._replace(right=foothold) if state.stance == "Right" else state._replace(left=foothold)

@@ -171,7 +171,7 @@ class StepPlanner:
         if swing is None:
             excess = placement.double_support_excess(desired, state.stance, foot)
             # If the old foot left before the new one carries load, the body would fall freely.
-            is_loaded = body.foot(state.stance).force >= timing.touchdown_force
+            is_loaded = body.foot(state.stance).force >= timing.loaded_force
             phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit) if is_loaded else 1.0
             foothold = state.old_foot
             other_foot = foot_behind(state, command, p)

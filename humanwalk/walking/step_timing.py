@@ -22,7 +22,7 @@ class StepTiming:
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)
     """Longest duration for a walk ratio: slow walks have shorter steps instead."""
 
-    double_support: float = quantity(0.093, "s", 0.04, 0.4)
+    double_support: float = quantity(0.0985, "s", 0.04, 0.4)
     """First part of the step."""
 
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
@@ -40,7 +40,11 @@ class StepTiming:
     double_support_rate_limit: float = quantity(6.0, "", 0.0, 10.0)
     """Largest increase of the rate in double support, for a foothold across the stance foot or a wide one."""
 
-    touchdown_force: float = quantity(60.0, "N", 0.0, 500.0)
+    touchdown_force: float = quantity(30.0, "N", 0.0, 500.0)
+    """Vertical force above which the swing ends: 4 % of the weight of the body. A heel can rest on the ground with 20 to
+    40 N; if the swing goes on meanwhile, the step ends up to 40 ms late."""
+
+    loaded_force: float = quantity(60.0, "N", 0.0, 500.0)
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""
 
     def __post_init__(self) -> None:

@@ -50,13 +50,13 @@ class SwingParameters:
     """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the
     heel of a pitched foot meets the ground before the end of the swing, while it is fast."""
 
-    landing_sink_rate: float = quantity(0.055, "m/s", 0.0, 0.5)
+    landing_sink_rate: float = quantity(0.07, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
-    push_off: float = quantity(8.15, "1/m", 0.0, 30.0)
+    push_off: float = quantity(8.4, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
 
-    landing_speed_ratio: float = quantity(0.63, "", 0.0, 1.0)
+    landing_speed_ratio: float = quantity(0.61, "", 0.0, 1.0)
     """Horizontal speed at touchdown, relative to the speed of the walk."""
 
     landing_deceleration: float = quantity(21.0, "1/s", 0.0, 50.0)

@@ -39,7 +39,7 @@ def touches(
     found = []
     for side in standing_feet(state):
         foot = body.foot(side)
-        is_loaded = foot.force >= parameters.timing.touchdown_force
+        is_loaded = foot.force >= parameters.timing.loaded_force
         if not (is_loaded or is_landing):
             continue
         pressure = foot.pressure if is_loaded else None

@@ -78,7 +78,7 @@ def test_drake_reads_the_look_strictly_and_only_the_look_differs() -> None:
     parser.SetStrictParsing()
     parser.AddModelsFromString(to_sdf(human(), "bones"), "sdf")
     plant.Finalize()
-    person = kinematics_plant(Subject())
+    person = kinematics_plant(Subject(sex="unspecified"))
     assert plant.num_positions() == person.num_positions()
     M, M_person = (model.CalcMassMatrix(model.CreateDefaultContext()) for model in (plant, person))
     np.testing.assert_allclose(M, M_person, atol=1e-12)

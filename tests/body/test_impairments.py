@@ -25,7 +25,7 @@ from humanwalk.body.subject import Subject
 from humanwalk.quantity import ParameterError
 
 PEOPLE = {
-    "thesis": Subject(),
+    "thesis": Subject(sex="unspecified"),
     "woman": Subject(60.0, 1.65, "female"),
     "child": Subject(20.0, 1.10, "male", 6.0),
 }
@@ -112,7 +112,7 @@ def test_two_short_legs_stand_on_the_ground() -> None:
 
 def test_the_walkers_model_lacks_an_unknown_impairment() -> None:
     subject = Subject(impairments=(WeakPlantarflexors(known=False),))
-    assert subject.known_skeleton == human() != subject.skeleton
+    assert subject.known_skeleton == Subject().skeleton != subject.skeleton
     assert (
         JointMap.of(kinematics_plant(subject)).effort_limits.sum()
         > JointMap.of(body_plant(subject)).effort_limits.sum()

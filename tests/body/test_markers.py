@@ -46,7 +46,7 @@ def test_sides_mirror_each_other(skeleton: Skeleton) -> None:
 
 @pytest.mark.parametrize(("mass", "stature"), [(55.0, 1.6), (95.0, 2.0), (70.0, 1.75)])
 def test_markers_scale_with_the_body(mass: float, stature: float) -> None:
-    scaled = standing(Subject(mass, stature).skeleton)
+    scaled = standing(Subject(mass, stature, "unspecified").skeleton)
     for name, place in standing(human()).items():
         np.testing.assert_allclose(scaled[name], place * stature / 1.75, atol=1e-9)
 

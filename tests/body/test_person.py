@@ -21,6 +21,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.sides import SIDES
 
 SEXES: tuple[Sex, ...] = ("female", "male")
+THESIS = Subject(sex="unspecified")
 
 
 @st.composite
@@ -134,7 +135,7 @@ def test_torque_limits_and_rotors_scale_as_those_of_the_thesis_body() -> None:
 
 
 def test_all_bodies_have_one_topology() -> None:
-    bodies = [BODIES[sex](Subject(20.0, 1.15, "male", 6.0) if sex != "unspecified" else Subject()) for sex in BODIES]
+    bodies = [BODIES[sex](Subject(20.0, 1.15, "male", 6.0) if sex != "unspecified" else THESIS) for sex in BODIES]
     for body in bodies:
         assert [s.name for s in body.segments] == [s.name for s in human().segments]
         assert [(j.name, j.parent, j.child, j.axis) for j in body.joints] == [
@@ -146,14 +147,18 @@ def test_all_bodies_have_one_topology() -> None:
         assert math.fsum(share.mass for share in shares.values()) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_the_thesis_body_is_unchanged_by_default() -> None:
-    assert Subject().body == human()
-    assert Subject(55.0, 1.6).body == human().scaled(55.0, 1.6)
-    assert Subject().skeleton == Subject().known_skeleton == human()
+def test_the_unspecified_sex_is_the_thesis_body() -> None:
+    assert THESIS.body == THESIS.skeleton == THESIS.known_skeleton == human()
+    assert Subject(55.0, 1.6, "unspecified").body == human().scaled(55.0, 1.6)
+
+
+def test_the_default_is_a_man_of_the_thesis_mass_and_stature() -> None:
+    assert Subject() == Subject(70.0, 1.75, "male", 30.0)
 
 
 def test_a_subject_is_described_in_a_line() -> None:
-    assert str(Subject()) == "70 kg, 1.75 m"
+    assert str(THESIS) == "70 kg, 1.75 m"
+    assert str(Subject()) == "70 kg, 1.75 m, male"
     girl = Subject(26.0, 1.28, "female", 8.0, loads=(Backpack(3.0), AnkleWeights(0.5)))
     assert str(girl) == "26 kg, 1.28 m, female, 8 years, backpack 3 kg, ankle_weights 1 kg"
 
@@ -205,8 +210,11 @@ def test_the_head_of_a_child_of_six_is_that_of_the_dummy() -> None:
         ({"mass": 200.0, "stature": 1.5}, "give 22.5 to 180 kg"),
         ({"mass": 20.0, "stature": 1.1}, "stature: 1.1 m is impossible at an age of 30 years; allowed: 1.2 to 2.2 m"),
         ({"mass": 40.0, "stature": 1.5, "age": 6.0, "sex": "male"}, "allowed: 1 to 1.35 m"),
-        ({"mass": 20.0, "stature": 1.1, "age": 6.0}, "sex: unspecified is the thesis' adult body and takes no age"),
-        ({"measured": "x.csv"}, "takes no measured; allowed: female, male"),
+        (
+            {"mass": 20.0, "stature": 1.1, "sex": "unspecified", "age": 6.0},
+            "sex: unspecified is the thesis' adult body and takes no age",
+        ),
+        ({"sex": "unspecified", "measured": "x.csv"}, "takes no measured; allowed: female, male"),
         ({"age": 5.0}, "age: 5 is out of range; allowed: 6 to 100 years"),
         ({"mass": float("nan")}, "mass: nan is out of range"),
     ],
@@ -258,7 +266,7 @@ def test_a_person_after_the_tables_is_its_own_reference() -> None:
 
 
 def test_the_thesis_body_is_compared_with_men() -> None:
-    rows = {row.name: row for row in segment_rows(Subject())}
+    rows = {row.name: row for row in segment_rows(THESIS)}
     body = human()
     assert math.fsum(row.own.mass for row in rows.values()) == pytest.approx(70.0, rel=1e-12)
     thigh = rows["right_thigh"].own

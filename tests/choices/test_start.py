@@ -144,8 +144,8 @@ def test_shipped_gaits_are_reachable(name: str) -> None:
 
 
 @pytest.mark.parametrize("step_length", [0.4, 0.5, 0.6])
-def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length: float, skeleton: Skeleton) -> None:
-    least = minimum_offset(step_length, skeleton.leg_length)
+def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length: float) -> None:
+    least = minimum_offset(step_length, load_scenario("thesis").subject.skeleton.leg_length)
     overrides = {
         "controller.thesis.gait.path.step_length": str(step_length),
         "controller.thesis.gait.path.offset": str(least - 1e-4),

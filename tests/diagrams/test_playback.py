@@ -9,6 +9,7 @@ from pydrake.systems.framework import Diagram
 
 from humanwalk.body import SIDES
 from humanwalk.body.joint_map import JointMap
+from humanwalk.body.plant import kinematics_plant
 from humanwalk.choices import ThesisController
 from humanwalk.control.inverse_kinematics import pose_error
 from humanwalk.diagrams.playback import make_playback
@@ -55,11 +56,10 @@ def test_no_plant_is_in_the_diagram(played: tuple[Scenario, Diagram]) -> None:
     assert {"scene_graph", "gait", "arms", "inverse_kinematics", "playback_state"} <= names
 
 
-def test_pelvis_and_soles_are_where_the_gait_wants_them(
-    played: tuple[Scenario, Diagram], plant: MultibodyPlant
-) -> None:
+def test_pelvis_and_soles_are_where_the_gait_wants_them(played: tuple[Scenario, Diagram]) -> None:
     scenario, playback = played
     gait, skeleton = scenario.controller.walk(scenario.subject), scenario.subject.skeleton  # type: ignore[attr-defined]
+    plant = kinematics_plant(scenario.subject)
     context = plant.CreateDefaultContext()
     simulator = Simulator(playback)
     # Samples of the inverse kinematics: between them the desired angles stand still.
