@@ -21,11 +21,13 @@ from humanwalk.scenario import Scenario, parse_scenario
 pytestmark = pytest.mark.slow
 
 # The steps are powers of two and the factors of the times are short binary numbers, so that simultaneous events are
-# simultaneous in all bodies. The soles begin below the ground, and not at the same height to the last bit.
+# simultaneous in all bodies; the gains are those of the thesis' body without a factor. The soles begin below the
+# ground, and not at the same height to the last bit.
 TIMES = """
 simulation: {time_step: 0.001953125}
 recording: {signal_period: 0.009765625}
 start: {pelvis_lift: -0.0005}
+subject: {sex: unspecified}
 """
 WALKS = {
     "balanced": f"""{TIMES}
@@ -34,7 +36,7 @@ controller:
   balanced:
     style: normative
     control_period: 0.005859375
-    command: {{acceleration: 1.0, points: [{{time: 0.125, forward: 1.0, turn: 0.1}}]}}
+    command: {{acceleration: 1.0, points: [{{time: 0.125, forward: 0.8, turn: 0.1}}]}}
 pushes: {{given: [{{time: 1.25, duration: 0.125, impulse: 10.0, direction: 1.5}}]}}
 """,
 }
@@ -59,7 +61,7 @@ def similar(scenario: Scenario, walker: str, scale: BodyScale) -> Scenario:
         scenario,
         **parts,
         duration=scale.time * scenario.duration,
-        subject=Subject(REFERENCE_MASS * scale.mass, REFERENCE_STATURE * scale.length),
+        subject=Subject(REFERENCE_MASS * scale.mass, REFERENCE_STATURE * scale.length, "unspecified"),
         controller=replace(
             controller,
             **{COMMANDED[walker]: scaled(getattr(controller, COMMANDED[walker]), scale)},

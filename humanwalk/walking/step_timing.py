@@ -41,8 +41,8 @@ class StepTiming:
     """Largest increase of the rate in double support, for a foothold across the stance foot or a wide one."""
 
     touchdown_force: float = quantity(30.0, "N", 0.0, 500.0)
-    """Vertical force above which the swing ends: 4 % of the weight of the body. A heel can rest on the ground with 20 to
-    40 N; if the swing goes on meanwhile, the step ends up to 40 ms late."""
+    """Vertical force above which the swing ends: 4 % of the weight of the body. A heel can rest on the ground with less
+    than 60 N; if the swing goes on meanwhile, the step ends up to 40 ms late."""
 
     loaded_force: float = quantity(60.0, "N", 0.0, 500.0)
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""

@@ -9,7 +9,6 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
-from humanwalk.body.subject import Subject
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.systems.signal import state_columns
 from humanwalk.view.browser import open_stage
@@ -40,7 +39,7 @@ def states(run: Any, plant: MultibodyPlant, joints: JointMap, time: Any) -> Any:
 def test_a_frame_shows_the_recorded_pose_of_every_body(
     stage: Any, loop: Any, short_run: Any, joints: JointMap, time: Any, body: Any
 ) -> None:
-    plant = kinematics_plant(Subject())
+    plant = kinematics_plant(short_run.scenario.subject)
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, states(short_run, plant, joints, time))
     expected = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(body)).GetAsMatrix4()
