@@ -109,7 +109,7 @@ class SolesOnGround(NamedTuple):
         Args:
             body: at this state.
             reference: loads of the feet.
-            p: limits of friction and of the height of a point in contact.
+            p: limits of friction, forces and the height of a point in contact.
         """
         soles = self.soles
         feet = [reference.foot(side) for side in SIDES]
@@ -138,7 +138,7 @@ class SolesOnGround(NamedTuple):
             feet: in the order of SIDES.
             is_near: whether a contact point is near the ground, (k,).
             weight: of the body [N].
-            p: largest forces.
+            p: `max_contact_force` and `unloading_force`.
         """
         limits = np.tile(((0.0,), (p.max_contact_force,)), is_near.size)
         for i, foot in enumerate(feet):

@@ -440,13 +440,19 @@ def test_a_style_accelerates_its_joint(dynamics: BodyDynamics, qp: WholeBodyQp, 
 def test_a_force_costs_its_square_over_the_load_of_its_foot(
     dynamics: BodyDynamics, qp: WholeBodyQp, load: float
 ) -> None:
-    """An edge costs the square of its coefficient."""
+    """An edge costs the square of its coefficient; the largest force of a foot that is unloaded is in proportion to the
+    load.
+    """
     body = body_at(dynamics)
     old = replace(reference_for(body).left, load=load)
-    _, _, contacts = qp.program(body, replace(reference_for(body), left=old), rest(qp))
+    program, _, contacts = qp.program(body, replace(reference_for(body), left=old), rest(qp))
     length = contacts.edges_W[:, :, 2]
     assert length[:6] == pytest.approx(PARAMETERS.force_unit)
     assert length[6:] == pytest.approx(np.sqrt(load) * PARAMETERS.force_unit)
+    largest = program.upper[: length.size] * length.ravel()
+    assert largest[:24] == pytest.approx(PARAMETERS.max_contact_force)
+    unloaded = PARAMETERS.unloading_force * load * WEIGHT / 24
+    assert largest[24:] == pytest.approx(unloaded if load < 1.0 else PARAMETERS.max_contact_force)
 
 
 @pytest.mark.parametrize("load", [0.1, 0.02])
