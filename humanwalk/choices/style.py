@@ -16,7 +16,7 @@ from humanwalk.motion.gait_curves import normative_curves
 from humanwalk.motion.recorded_motion import MotionMapping
 from humanwalk.motion.recorded_strides import RecordedGait, recorded_gait
 from humanwalk.parameter_file import load_as
-from humanwalk.quantity import ParameterError, file_path
+from humanwalk.quantity import ParameterError, file_path, quantity
 from humanwalk.terrain import Plane
 
 
@@ -47,8 +47,14 @@ class NormativeStyle:
 
     gains: TaskGains = critical(300.0, 0.15)
 
+    ankle: float = quantity(0.01, "", 0.0, 10.0)
+    """Weight of the ankles relative to hips and knees. The angle of a loaded ankle follows from the knee and from the
+    rockers of the foot; a greater weight moves the center of pressure and costs moments (docs/likeness.md, "A style
+    that leaves the ankle to the foot")."""
+
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
-        return JointStyle(joints, normative_curves(subject.skeleton.hip_height, PELVIC_TILT), self.gains)
+        curves = normative_curves(subject.skeleton.hip_height, PELVIC_TILT)
+        return JointStyle(joints, curves, self.gains, self.ankle)
 
 
 @dataclass(frozen=True)

@@ -22,15 +22,17 @@ class JointStyle:
     the commanded speed, the angles of a full stride kept the body from its first step, and it walked backward.
     """
 
-    def __init__(self, joints: JointMap, curves: GaitCurves, gains: TaskGains) -> None:
+    def __init__(self, joints: JointMap, curves: GaitCurves, gains: TaskGains, ankle: float = 1.0) -> None:
         """Make the tasks.
 
         Args:
             joints: Places of the joints in the positions and velocities of the plant.
             curves: Angles over the gait cycle.
             gains: Of the task of each leg.
+            ankle: Weight of the ankle relative to hip and knee.
         """
         self._curves, self._gains = curves, gains
+        self._scale = np.sqrt((1.0, 1.0, ankle))
         places = {side: [joints.names.index(name) for name in styled_joints(LEGS[side])] for side in SIDES}
         self._q = {side: joints.q[place] for side, place in places.items()}
         self._v = {side: joints.v[place] for side, place in places.items()}
@@ -57,5 +59,6 @@ class JointStyle:
             q, v = body.q[self._q[side]], body.v[places]
             desired = phase_rate**2 * motion.curvature
             desired += gains.stiffness * (motion.value - q) + gains.damping * (phase_rate * motion.slope - v)
-            tasks.append(Task(np.eye(body.v.size)[places], desired, share * radius**2 * gains.weight))
+            J = self._scale[:, None] * np.eye(body.v.size)[places]
+            tasks.append(Task(J, self._scale * desired, share * radius**2 * gains.weight))
         return tasks

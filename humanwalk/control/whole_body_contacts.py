@@ -138,14 +138,13 @@ class SolesOnGround(NamedTuple):
             feet: in the order of SIDES.
             is_near: whether a contact point is near the ground, (k,).
             weight: of the body [N].
-            p: `max_contact_force` and `unloading_force`.
+            p: `max_contact_force`.
         """
-        limits = np.tile(((0.0,), (p.max_contact_force,)), is_near.size)
+        limits = np.zeros((2, is_near.size))
         for i, foot in enumerate(feet):
             near = is_near & (self.soles.side == i)
             heel = near & self.soles.is_heel
-            if foot.load < 1.0:
-                limits[1, near] = p.unloading_force * foot.load * weight / (EDGES * max(near.sum(), 1))
+            limits[1, near] = foot.load * min(p.max_contact_force, foot.force * weight / (EDGES * max(near.sum(), 1)))
             heel_limits = weight / (EDGES * max(heel.sum(), 1)) * np.array(foot.heel)[:, None]
             limits[:, heel] = np.minimum(heel_limits, limits[1, heel])
         return limits

@@ -165,11 +165,6 @@ class WholeBodyParameters:
     max_contact_force: float = quantity(1500.0, "N", 100.0, 1e5)
     """Maximum force along each edge (our choice): twice the weight of the body."""
 
-    unloading_force: float = quantity(3.0, "", 0.1, 100.0)
-    """Largest vertical force on a foot that is being unloaded, in body weights per load. The leading foot takes over
-    before the trailing foot leaves the ground (docs/likeness.md, "Unloading of the trailing foot, and de Leva's
-    body")."""
-
     joint_limit_stiffness: float = quantity(900.0, "1/s2", 0.0, 1e4)
     """Bound of a joint's acceleration toward its limit per distance (our choice): a critically damped stop with a time
     constant of 1/30 s."""

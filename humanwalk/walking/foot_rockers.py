@@ -49,6 +49,11 @@ class FootRockers:
     If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness.md, "A heel that
     lands and leaves with its load")."""
 
+    unloading_force: float = quantity(3.0, "", 0.1, 100.0)
+    """Largest vertical force on a foot that is being unloaded, in body weights per load, in a step on one face. The
+    leading foot takes over before the trailing foot leaves the ground (docs/likeness.md, "Unloading of the trailing
+    foot, and de Leva's body")."""
+
     pitch: float = quantity(1.27, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
 

@@ -153,6 +153,7 @@ class FootReference:
         pitch: Pitch of the foot relative to R_WS [rad] (SWING and HEEL_OFF only).
         toes: Extension of the toes and its rate [rad, rad/s].
         heel: Least and largest vertical force under the heel [body weights].
+        force: Largest vertical force per load [body weights].
     """
 
     task: FootTask
@@ -164,6 +165,7 @@ class FootReference:
     pitch: ScalarMotion = ScalarMotion()
     toes: tuple[float, float] = (0.0, 0.0)
     heel: tuple[float, float] = (0.0, math.inf)
+    force: float = math.inf
 
 
 @dataclass(frozen=True)

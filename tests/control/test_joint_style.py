@@ -55,6 +55,19 @@ def test_each_leg_follows_its_own_phase(dynamics: BodyDynamics, style: JointStyl
         assert task.J @ np.arange(body.v.size) == pytest.approx(places)
 
 
+def test_a_style_follows_the_ankle_with_its_own_weight(
+    dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
+) -> None:
+    """The cost is the square of J v' minus the desired value: a weight is the square of a factor of both."""
+    body, curves = walking_at(1.0, dynamics, plant), GaitCurves.through(np.array([1.0]), ANGLES)
+    softer = JointStyle(dynamics.joints, curves, GAINS, ankle=0.25)
+    for task, soft in zip(style.tasks(body, WALK, 1.0), softer.tasks(body, WALK, 1.0), strict=True):
+        factors = np.array((1.0, 1.0, 0.5))
+        expected = factors[:, None] * task.J
+        np.testing.assert_allclose(soft.J, expected)
+        assert soft.acceleration == pytest.approx(factors * task.acceleration)
+
+
 def test_in_standing_and_backward_there_is_no_style(
     dynamics: BodyDynamics, style: JointStyle, plant: MultibodyPlant
 ) -> None:

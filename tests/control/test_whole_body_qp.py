@@ -440,35 +440,31 @@ def test_a_style_accelerates_its_joint(dynamics: BodyDynamics, qp: WholeBodyQp, 
 def test_a_force_costs_its_square_over_the_load_of_its_foot(
     dynamics: BodyDynamics, qp: WholeBodyQp, load: float
 ) -> None:
-    """An edge costs the square of its coefficient; the largest force of a foot that is unloaded is in proportion to the
-    load.
-    """
+    """An edge costs the square of its coefficient; the largest force of a foot is in proportion to the load."""
     body = body_at(dynamics)
-    old = replace(reference_for(body).left, load=load)
+    old = replace(reference_for(body).left, load=load, force=3.0)
     program, _, contacts = qp.program(body, replace(reference_for(body), left=old), rest(qp))
     length = contacts.edges_W[:, :, 2]
     assert length[:6] == pytest.approx(PARAMETERS.force_unit)
     assert length[6:] == pytest.approx(np.sqrt(load) * PARAMETERS.force_unit)
     largest = program.upper[: length.size] * length.ravel()
     assert largest[:24] == pytest.approx(PARAMETERS.max_contact_force)
-    unloaded = PARAMETERS.unloading_force * load * WEIGHT / 24
-    assert largest[24:] == pytest.approx(unloaded if load < 1.0 else PARAMETERS.max_contact_force)
+    assert largest[24:] == pytest.approx(3.0 * load * WEIGHT / 24)
 
 
 @pytest.mark.parametrize("load", [0.1, 0.02])
 def test_a_foot_that_is_unloaded_carries_a_limited_force_although_the_plan_wants_more(
-    dynamics: BodyDynamics, skeleton: Skeleton, load: float
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton, load: float
 ) -> None:
     """The planned zero-moment point is between the feet, where half of the weight would be on each."""
     body, of_left = body_at(dynamics), [s.body in LEGS["Left"].foot_bodies for s in contact_spheres(skeleton)]
-    left = replace(reference_for(body).left, load=load)
     carried = {}
-    for limit in (100.0, PARAMETERS.unloading_force):
-        qp = WholeBodyQp(dynamics, contact_spheres(skeleton), replace(PARAMETERS, unloading_force=limit))
+    for limit in (math.inf, 3.0):
+        left = replace(reference_for(body).left, load=load, force=limit)
         solution = qp.solve(body, replace(reference_for(body, zmp=0.05 + 0.04j), left=left), rest(qp))
         carried[limit] = solution.forces[of_left, 2].sum() / WEIGHT
-    assert carried[100.0] > PARAMETERS.unloading_force * load + 0.05
-    assert carried[PARAMETERS.unloading_force] <= PARAMETERS.unloading_force * load + 1e-3
+    assert carried[math.inf] > 3.0 * load + 0.05
+    assert carried[3.0] <= 3.0 * load + 1e-3
 
 
 @pytest.mark.parametrize("least, largest", [(0.42, math.inf), (0.0, 0.2), (0.0, 0.0)])

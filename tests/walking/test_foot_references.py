@@ -98,6 +98,14 @@ def test_the_foot_behind_is_unloaded_in_double_support(fraction: float) -> None:
     assert reference.load == pytest.approx(1.0 - fraction, abs=1e-9)
 
 
+@pytest.mark.parametrize("command", [WALK, Command(0.5 * ROCKERS.min_speed)])
+def test_the_force_on_the_foot_behind_is_limited_in_a_step_on_one_face(command: Command) -> None:
+    landed = state_at(0.5 * TIMING.double_support)
+    box = landed._replace(left=STANCE._replace(face=LEVEL._replace(lower=(0.3, -10.0))))
+    assert foot_behind(landed, command, PARAMETERS).force == ROCKERS.unloading_force
+    assert foot_behind(box, command, PARAMETERS).force == math.inf
+
+
 @given(st.floats(-1.0, 1.5), st.floats(-1.0, 1.5))
 def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_steps(
     forward: float, length: float
