@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from humanwalk.body import human
+from humanwalk.body.subject import Subject
 from humanwalk.measures.curves import JOINTS
 from humanwalk.measures.walk_measures import MEASURES, Pace
 from humanwalk.study.row import likeness_columns
@@ -129,7 +129,7 @@ def _within_people(name: str, form: str) -> Goal:
     (kind,) = (kind for kind in MEASURES if kind.name == name)
 
     def limits(row: Row) -> list[Limits]:
-        people = kind.people(Pace(row["likeness.speed_m_s"], human().hip_height))
+        people = kind.people(Pace(row["likeness.speed_m_s"], Subject().skeleton.hip_height))
         assert people is not None
         return [(people.low, people.high)]
 

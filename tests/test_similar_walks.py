@@ -36,7 +36,7 @@ controller:
   balanced:
     style: normative
     control_period: 0.005859375
-    command: {{acceleration: 1.0, points: [{{time: 0.125, forward: 0.8, turn: 0.1}}]}}
+    command: {{acceleration: 1.0, points: [{{time: 0.125, forward: 1.0, turn: 0.1}}]}}
 pushes: {{given: [{{time: 1.25, duration: 0.125, impulse: 10.0, direction: 1.5}}]}}
 """,
 }

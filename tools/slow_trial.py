@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from humanwalk.body import SIDES, human
+from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.pelvic_plane import PELVIC_TILT
+from humanwalk.body.subject import Subject
 from humanwalk.motion.gait_curves import normative_curves, styled_joints
 
 DURATION, RATE = 8.0, 50.0
@@ -21,7 +22,7 @@ WALK_RATIO = 0.36
 """Length times duration of a step [m s]."""
 
 
-HIP_HEIGHT = human().hip_height
+HIP_HEIGHT = Subject().skeleton.hip_height
 CURVES = normative_curves(HIP_HEIGHT, PELVIC_TILT)
 
 

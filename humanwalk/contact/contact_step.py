@@ -46,9 +46,9 @@ FULL_PASSES = 3
 GRIP_TOLERANCE = 0.25
 """Relative change of a grip that requires another pass."""
 
-MOBILITY_MARGIN = 1.5
-"""Factor on the mobility: one that is a tenth too small makes a step of 1 ms unstable, one that is twice too large only
-lets the forces lag a little."""
+MOBILITY_MARGIN = 1.25
+"""Factor on the mobility: one that is a tenth too small makes a step of 1 ms unstable, one that is too large delays the
+forces. With 1.5 a walk at 2 ms swerves (docs/contact.md)."""
 
 
 class ContactMemory(NamedTuple):
