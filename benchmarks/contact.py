@@ -49,7 +49,7 @@ SWING = 0.2
 LONGEST_EVALUATION = 1500
 """Steps of the walk whose states are evaluated."""
 STEP = {"simulation.time_step": "0.001"}
-"""The asperity law is stable up to 1.4 ms under the thesis' walk."""
+"""The longest that is accepted on asperity contact."""
 REPEATS = 30
 
 

@@ -9,9 +9,9 @@ from humanwalk.contact.contact_step import body_mobility, point_jacobians
 from humanwalk.numerics import Array
 from humanwalk.numerics.stability import largest_stable_step
 
-MAX_STEP = 0.002
-"""No longer step is accepted [s]: from 3 ms on a block that lands on a slope may be thrown off, which no linearization
-at rest shows."""
+MAX_STEP = 0.001
+"""No longer step is accepted [s]. At 1.5 ms the ankle of a light child oscillates when few points of the foot touch the
+ground, which no linearization in standing shows (docs/contact.md)."""
 
 
 def patch_impedance(r: Array, area: Array, R_SW: Array, normal: float, tangential: float) -> Array:
