@@ -49,8 +49,8 @@ class NormativeStyle:
 
     ankle: float = quantity(0.01, "", 0.0, 10.0)
     """Weight of the ankles relative to hips and knees. The angle of a loaded ankle follows from the knee and from the
-    rockers of the foot; a greater weight moves the center of pressure and costs moments (docs/likeness.md, "A style
-    that leaves the ankle to the foot")."""
+    rockers of the foot; a greater weight moves the center of pressure and costs moments (docs/likeness_trials.md,
+    "A style that leaves the ankle to the foot")."""
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
         curves = normative_curves(subject.skeleton.hip_height, PELVIC_TILT)

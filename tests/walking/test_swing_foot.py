@@ -67,7 +67,7 @@ def test_a_foot_that_lands_on_its_heel_is_higher_by_what_the_heel_is_lower_than_
 
 
 def test_a_foot_that_leaves_the_ground_as_people_do_clears_it_in_between() -> None:
-    """Their ankle is 12 cm above its height in standing at toe-off (docs/likeness.md)."""
+    """Their ankle is 12 cm above its height in standing at toe-off (docs/likeness_trials.md)."""
     profile = SwingProfile.from_toe_off(toe_off(0.068 + 0.12), 0.068, 0.25, DURATION, SwingParameters(), SOLE)
     assert all(profile.at(s / 100)[0].value > 0.068 for s in range(95))
 
