@@ -1,7 +1,7 @@
 """Where the next foot goes: where balance requires it, within reach, and clear of the other leg.
 
 A foothold is a complex number x + iy [m] in the frame of the step: origin at the stance ankle, x along the heading.
-The limits were found with simulated pushes (docs/balance.md, "What a push teaches").
+The limits were found with simulated pushes (docs/balance_trials.md, "What a push teaches").
 """
 
 import math
@@ -46,7 +46,7 @@ class StepPlacement:
 
     max_com_distance: float = quantity(0.38, "m", 0.1, 1.0)
     """Largest distance of a foothold ahead of or behind the center of mass at touchdown. A foot that lands farther
-    ahead brakes the body so much that it falls backward (docs/balance.md, "What a push teaches")."""
+    ahead brakes the body so much that it falls backward (docs/balance_trials.md, "What a push teaches")."""
 
     max_length: float = quantity(1.0, "m", 0.1, 2.0)
     """Largest distance of a foothold ahead of or behind the stance foot."""
