@@ -9,6 +9,7 @@ import csv
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -128,10 +129,14 @@ def _within_people(name: str, form: str) -> Goal:
     """A measure that has to be within the human range at the speed of the row."""
     (kind,) = (kind for kind in MEASURES if kind.name == name)
 
-    def limits(row: Row) -> list[Limits]:
-        people = kind.people(Pace(row["likeness.speed_m_s"], Subject().skeleton.hip_height))
+    @cache
+    def limits_at(speed: float) -> Limits:
+        people = kind.people(Pace(speed, Subject().skeleton.hip_height))
         assert people is not None
-        return [(people.low, people.high)]
+        return people.low, people.high
+
+    def limits(row: Row) -> list[Limits]:
+        return [limits_at(row["likeness.speed_m_s"])]
 
     heading = f"{name} [{kind.unit}]" if kind.unit else name
     return Goal(heading, _values(kind.column), Target("human 1 SD", limits), form=form)
