@@ -13,7 +13,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
-from humanwalk.body.upright import knee_flexions
+from humanwalk.body.upright import arm_freedom, knee_flexions
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
@@ -90,7 +90,7 @@ class BalancedController:
     """Leg that swings first."""
 
     elbow_flexion: float = quantity(0.35, "rad", 0.0, 1.5)
-    """Flexion of the elbows while the arms hang."""
+    """Flexion of the elbows while the arms hang without a load."""
 
     wrist_flexion: float = quantity(0.0, "rad", -0.5, 1.0)
     """Palmar flexion of the wrists."""
@@ -146,7 +146,7 @@ class BalancedController:
         """Standing on bent legs, the soles parallel to the ground along x; it leans against known loads."""
         lean = load_lean(subject)
         slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
-        angles = self._hanging_arms()
+        angles = self._hanging_arms(subject)
         for side, flexion in knee_flexions(subject.skeleton, 2.0 * START_FLEXION).items():
             leg = LEGS[side]
             angles |= {leg.hip_flexion: 0.5 * flexion, leg.knee: flexion, leg.ankle: 0.5 * flexion + slope + lean}
@@ -174,6 +174,7 @@ class BalancedController:
                 self.control_period,
                 sole_extent(world.subject.skeleton),
                 self.knowledge.ground(world.terrain, errors, fitted.planner.feeling),
+                arm_freedom(world.subject),
             ),
             com=world.port("body_observer", "com"),
             ankles=world.port("body_observer", "ankles"),
@@ -181,7 +182,7 @@ class BalancedController:
             command=command.GetOutputPort("command"),
         )
         tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
-        posture = self._hanging_arms()
+        posture = self._hanging_arms(world.subject)
         style = fitted.style.task(world.subject, JointMap.of(world.model))
         controller = world.add(
             "controller",
@@ -194,9 +195,9 @@ class BalancedController:
         state, time, torque = map(controller.GetOutputPort, ("desired_state", "sample_time", "torque"))
         return Command(state, time, feedforward=torque)
 
-    def _hanging_arms(self) -> dict[str, float]:
-        """Angles [rad] of hanging arms by joint."""
-        elbows = {arm.elbow: self.elbow_flexion for arm in ARMS.values()}
+    def _hanging_arms(self, subject: Subject) -> dict[str, float]:
+        """Angles [rad] of hanging arms by joint; one that carries a load is straighter."""
+        elbows = {ARMS[side].elbow: free * self.elbow_flexion for side, free in arm_freedom(subject).items()}
         return elbows | {arm.wrist: self.wrist_flexion for arm in ARMS.values()}
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:

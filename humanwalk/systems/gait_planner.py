@@ -1,5 +1,7 @@
 """LeafSystem: the step planner, run periodically."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
@@ -13,7 +15,7 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.step_planner import StepPlanner
+from humanwalk.walking.step_planner import FREE_ARMS, StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootTask, WalkingReference
 
 POINTS = ("zmp", "dcm", "dcm_reference", "foothold")
@@ -46,6 +48,7 @@ class GaitPlanner(LeafSystem):
         period: float,
         sole: SoleExtent,
         ground: Ground,
+        arm_freedom: Mapping[Side, float] = FREE_ARMS,
     ) -> None:
         """Create the planner.
 
@@ -56,6 +59,7 @@ class GaitPlanner(LeafSystem):
             period: Control period [s].
             sole: Extent of a sole.
             ground: What is known of the ground.
+            arm_freedom: Swing of each arm relative to that of an arm without a load.
         """
         super().__init__()
         self._ground = ground
@@ -70,6 +74,7 @@ class GaitPlanner(LeafSystem):
             sole=sole,
             ground=ground,
             passive_ankles=passive_ankles(plant),
+            arm_freedom=arm_freedom,
         )
         self._com = self.DeclareVectorInputPort("com", 6)
         self._ankles = self.DeclareVectorInputPort("ankles", 30)
