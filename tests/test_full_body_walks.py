@@ -10,6 +10,7 @@ from pydrake.math import RigidTransform
 
 from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.body.limbs import LEGS, PELVIS, Leg
+from humanwalk.body.loads import Backpack
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.measures.events import FootEvents, events_of
@@ -223,3 +224,42 @@ def test_a_standing_body_that_is_pushed_steps_and_stands_again(degrees: float) -
     assert np.hypot(signals["com.velocity_x_m_s"][-1], signals["com.velocity_y_m_s"][-1]) < 0.05
     forces = [signals[f"{side}_foot.force_z_N"][-1] for side in ("right", "left")]
     assert min(forces) > 0.2 * MASS * GRAVITY
+
+
+@WALKS
+def test_a_walker_that_carries_nothing_feels_no_load(name: str) -> None:
+    assert not walk_of(name)["felt_load.mass_kg"].any()
+
+
+def walk_with(load: str) -> dict[str, Array]:
+    """Signals of 8 s of walking at 1 m/s with a load."""
+    outcome = simulate(
+        parse_scenario(f"""
+        duration: 8.0
+        subject: {{loads: [{load}]}}
+        controller: {{balanced: {{command: {{points: [{{time: 0.5, forward: 1.0}}]}}}}}}
+    """)
+    )
+    assert outcome.end == "completed"
+    return {name: outcome.signals[name].to_numpy() for name in outcome.signals.column_names}
+
+
+def test_a_walker_feels_the_load_that_its_model_lacks() -> None:
+    """Its mass, where it is on the back, and that the walk has to carry it."""
+    signals = walk_with("{backpack: {mass: 15.0, known: false}}")
+    steady = signals["time_s"] >= STEADY_FROM
+    assert signals["felt_load.mass_kg"][steady] == pytest.approx(15.0, rel=0.1)
+    (bag,) = Backpack(15.0).parts(Subject().body)
+    assert signals["felt_load.x_m"][steady].mean() == pytest.approx(bag.center[0], abs=0.03)
+    assert signals["felt_load.y_m"][steady].mean() == pytest.approx(0.0, abs=0.02)
+    assert signals["com.velocity_x_m_s"][steady].mean() == pytest.approx(1.0, abs=0.1)
+    assert np.abs(signals["com.y_m"]).max() < 0.1
+
+
+def test_a_walker_that_knows_its_load_feels_no_other() -> None:
+    """And with a heavy hand it walks as fast as without."""
+    signals = walk_with("{suitcase: {mass: 15.0, side: Left}}")
+    steady = signals["time_s"] >= STEADY_FROM
+    assert not signals["felt_load.mass_kg"].any()
+    assert signals["com.velocity_x_m_s"][steady].mean() == pytest.approx(1.0, abs=0.1)
+    assert np.abs(signals["com.y_m"]).max() < 0.2

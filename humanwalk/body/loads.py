@@ -1,7 +1,7 @@
 """Loads that a person carries: rigid bodies welded to a segment, uniform and without contact.
 
 Each kind is a frozen dataclass whose parts are a function of the skeleton that carries it. `known` tells whether the
-walker's own model of its body includes the load.
+walker's own model of its body includes the load; the balanced walker feels a load that it lacks.
 """
 
 from collections.abc import Iterator, Sequence

@@ -19,11 +19,13 @@ from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
 from humanwalk.choices.style import STYLES, NoStyle, Style
 from humanwalk.choices.world import World
+from humanwalk.control.felt_load import LoadFeeling
 from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, choice, quantity, tag_of
 from humanwalk.systems.gait_planner import GaitPlanner
+from humanwalk.systems.load_observer import LoadObserver
 from humanwalk.systems.whole_body_controller import WholeBodyController
 from humanwalk.terrain import Terrain
 from humanwalk.walking.command import CommandParameters
@@ -83,6 +85,9 @@ class BalancedController:
     style: Style = choice(STYLES, NoStyle())
     """Joint angles that the legs follow softly, beside steps and balance."""
 
+    load_feeling: LoadFeeling = LoadFeeling()
+    """How the walker feels a load that its model of the body lacks."""
+
     gains: CompliantGains = CompliantGains()
     """PD gains of the joints; values are for the reference body and scale with the subject."""
 
@@ -133,6 +138,7 @@ class BalancedController:
             whole_body=scaled(self.whole_body, scale),
             gains=scaled(self.gains, scale),
             style=scaled(self.style, scale),
+            load_feeling=scaled(self.load_feeling, scale),
         )
 
     def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
@@ -153,7 +159,7 @@ class BalancedController:
         return StartPosture(angles, RigidTransform(RollPitchYaw(0.0, lean, 0.0), np.zeros(3)))
 
     def add_to(self, world: World) -> Command:
-        """Add command, planner and controller.
+        """Add command, load_observer, planner and controller.
 
         Raises:
             ParameterError: the plant is continuous.
@@ -164,6 +170,13 @@ class BalancedController:
             )
         fitted = self.fitted(world.subject)
         command = world.add("command", world.sources.command(self.command))
+        load = world.add(
+            "load_observer",
+            LoadObserver(world.model, fitted.load_feeling, self.control_period),
+            state=world.state,
+            foot_forces=world.port("foot_contact", "foot_forces"),
+        ).GetOutputPort("load")
+        world.builder.Connect(load, world.builder.GetSubsystemByName("body_observer").GetInputPort("load"))
         errors = np.random.default_rng((world.seed, KNOWLEDGE_ERRORS))
         planner = world.add(
             "planner",
@@ -189,6 +202,7 @@ class BalancedController:
             WholeBodyController(world.model, world.subject.skeleton, tasks, posture, self.control_period, style),
             state=world.state,
             plan=planner.GetOutputPort("plan"),
+            load=load,
         )
         if world.known_assistance is not None:
             world.builder.Connect(world.known_assistance, controller.GetInputPort("assistance"))

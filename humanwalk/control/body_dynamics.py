@@ -8,6 +8,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ForceElementIndex, JacobianWrtVariable, MultibodyForces, RevoluteSpring
 
+from humanwalk.body.carried_load import NO_LOAD, CarriedLoad
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import CHEST, LEGS, PELVIS
 from humanwalk.numerics import Array
@@ -96,6 +97,7 @@ class BodyDynamics:
         self.joints = JointMap.of(plant)
         self.mass = plant.CalcTotalMass(plant.CreateDefaultContext())
         self._context = plant.CreateDefaultContext()
+        self._carried = CarriedLoad(plant, self._context)
         self._world = plant.world_frame()
         self.bodies = (PELVIS, CHEST, *(body for leg in LEGS.values() for body in leg.foot_bodies))
         bodies = [plant.GetBodyByName(name) for name in self.bodies]
@@ -114,8 +116,10 @@ class BodyDynamics:
         self._upward[3:6] = -plant.gravity_field().gravity_vector()
         self._no_forces = MultibodyForces(plant)
 
-    def at(self, state: Array) -> Dynamics:
-        """The body at a plant state [q; v]."""
+    def at(self, state: Array, load: Array = NO_LOAD) -> Dynamics:
+        """The body at a plant state [q; v], with a load on its chest (see `CarriedLoad`)."""
+        self._carried.set(load)
+        mass = self.mass + self._carried.mass
         plant, context, world = self.plant, self._context, self._world
         plant.SetPositionsAndVelocities(context, state)
         q, v = state[: plant.num_positions()], state[plant.num_positions() :]
@@ -132,9 +136,9 @@ class BodyDynamics:
         # The translational rows of the floating base are momentum and its rate (the pelvis' velocities are given in W).
         com = PointMotion(
             position=plant.CalcCenterOfMassPositionInWorld(context),
-            J=M[3:6] / self.mass,
-            velocity=M[3:6] @ v / self.mass,
-            bias=h[3:6] / self.mass - self._upward[3:6],
+            J=M[3:6] / mass,
+            velocity=M[3:6] @ v / mass,
+            bias=h[3:6] / mass - self._upward[3:6],
         )
         h = h + self._damping * v
         h[self._spring_v] += self._stiffness * (q[self._spring_q] - self._rest_angle)

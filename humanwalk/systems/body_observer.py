@@ -5,6 +5,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body import SIDES
+from humanwalk.body.carried_load import NO_LOAD, CarriedLoad
 from humanwalk.body.limbs import LEGS
 from humanwalk.numerics import Array
 from humanwalk.systems.signal import Signal, xyz
@@ -15,10 +16,12 @@ class BodyObserver(LeafSystem):
 
     Inputs:
         state: plant state [q; v].
+        load: (4) load on the chest that the plant lacks, see LoadObserver. Optional; default: none.
 
     Outputs:
         soles: (6) position of the right, then the left sole frame in W [m].
-        com: (6) position [m], then velocity [m/s] of the center of mass in W, of the bodies in the plant.
+        com: (6) position [m], then velocity [m/s] of the center of mass in W, of the bodies in the plant and the
+            load.
         ankles: (30) of the right, then the left ankle in W: position [m], velocity [m/s], x and z axis of the hindfoot
             and its angular velocity [rad/s].
     """
@@ -32,9 +35,11 @@ class BodyObserver(LeafSystem):
         super().__init__()
         self._plant = plant
         self._plant_context = plant.CreateDefaultContext()
+        self._carried = CarriedLoad(plant, self._plant_context)
         self._soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
         self._ankles = [plant.GetFrameByName(LEGS[side].hindfoot) for side in SIDES]
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
+        self._load = self.DeclareVectorInputPort("load", NO_LOAD.size)
         soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
         com = self.DeclareVectorOutputPort("com", 6, self._calc_com)
         self.DeclareVectorOutputPort("ankles", 30, self._calc_ankles)
@@ -48,6 +53,7 @@ class BodyObserver(LeafSystem):
         state = self._state.Eval(context)
         if not np.array_equal(state, self._plant.GetPositionsAndVelocities(self._plant_context)):
             self._plant.SetPositionsAndVelocities(self._plant_context, state)
+        self._carried.set(self._load.Eval(context) if self._load.HasValue(context) else NO_LOAD)
         return self._plant_context
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:

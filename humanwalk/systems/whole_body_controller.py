@@ -8,6 +8,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import SIDES, Skeleton, contact_spheres
+from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.limbs import ARMS, HEAD_YAW, LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
@@ -31,6 +32,7 @@ class WholeBodyController(LeafSystem):
     Inputs:
         state: plant state [q; v].
         plan: WalkingReference.
+        load: (4) load on the chest that the model of the body lacks, see LoadObserver. Optional; default: none.
         assistance: (n) known torque of devices on the joints, in actuator order [N m]; the actuators deliver the rest.
             Optional; default: zero.
 
@@ -80,6 +82,7 @@ class WholeBodyController(LeafSystem):
 
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
+        self._load = self.DeclareVectorInputPort("load", NO_LOAD.size)
         self._assistance = self.DeclareVectorInputPort("assistance", n)
         self._torque, self._desired, self._time, self._status = (
             self.DeclareDiscreteState(size) for size in (n, 2 * n, 1, len(STATUS_COLUMNS))
@@ -94,7 +97,8 @@ class WholeBodyController(LeafSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context)
-        body = self._assisted(context, self._dynamics.at(self._state.Eval(context)))
+        load = self._load.Eval(context) if self._load.HasValue(context) else NO_LOAD
+        body = self._assisted(context, self._dynamics.at(self._state.Eval(context), load))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)
         radius = self._qp.parameters.rotation_radius

@@ -50,9 +50,11 @@ def random_state(plant: MultibodyPlant, rng: np.random.Generator) -> tuple[Array
 
 
 def test_ports(observer: BodyObserver, plant: MultibodyPlant) -> None:
-    assert observer.num_input_ports() == 1
-    assert observer.GetInputPort("state").get_name() == "state"
-    assert observer.GetInputPort("state").size() == plant.num_multibody_states()
+    inputs = [observer.get_input_port(i) for i in range(observer.num_input_ports())]
+    assert [(port.get_name(), port.size()) for port in inputs] == [
+        ("state", plant.num_multibody_states()),
+        ("load", 4),
+    ]
     for port, name in ((observer.GetOutputPort("soles"), "soles"), (observer.GetOutputPort("com"), "com")):
         assert (port.get_name(), port.size()) == (name, 6)
 
