@@ -9,7 +9,7 @@ from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RigidTransform
 
 from humanwalk.body.contact import SOLE_PARTS
-from humanwalk.body.limbs import LEGS, PELVIS, Leg
+from humanwalk.body.limbs import ARMS, LEGS, PELVIS, Leg
 from humanwalk.body.loads import Backpack
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
@@ -256,10 +256,12 @@ def test_a_walker_feels_the_load_that_its_model_lacks() -> None:
     assert np.abs(signals["com.y_m"]).max() < 0.1
 
 
-def test_a_walker_that_knows_its_load_feels_no_other() -> None:
-    """And with a heavy hand it walks as fast as without."""
-    signals = walk_with("{suitcase: {mass: 15.0, side: Left}}")
+@pytest.mark.parametrize("load", ["{mass: 15.0, side: Left}", "{mass: 8.0, side: Right, known: false}"])
+def test_a_heavy_hand_hangs_still_and_the_walker_is_as_fast_as_without(load: str) -> None:
+    signals = walk_with(f"{{suitcase: {load}}}")
     steady = signals["time_s"] >= STEADY_FROM
-    assert not signals["felt_load.mass_kg"].any()
     assert signals["com.velocity_x_m_s"][steady].mean() == pytest.approx(1.0, abs=0.1)
     assert np.abs(signals["com.y_m"]).max() < 0.2
+    right, left = (np.ptp(signals[f"{arm.shoulder_flexion}.angle_rad"][steady]) for arm in ARMS.values())
+    assert left < 0.5 * right if "Left" in load else right < 0.5 * left
+    assert signals["felt_load.mass_kg"][steady].mean() == pytest.approx(8.0 if "known" in load else 0.0, rel=0.1)

@@ -1,18 +1,15 @@
-"""Upright standing: how tall a body with unequal legs and stiff joints stands, its knees, and its hanging arms."""
+"""Upright standing: how tall a body with unequal legs and stiff joints stands, and how it bends its knees."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.impairments import NO_TORQUE
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import ARMS, LEGS
-from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.skeleton import Skeleton
-from humanwalk.body.subject import Subject
 from humanwalk.numerics.scalars import clip
 from humanwalk.sides import SIDES, Side
 
@@ -58,20 +55,6 @@ def passive_ankles(plant: MultibodyPlant) -> tuple[Side, ...]:
     joints = JointMap.of(plant)
     limits = dict(zip(joints.names, joints.effort_limits, strict=True))
     return tuple(side for side, leg in LEGS.items() if limits[leg.ankle] <= NO_TORQUE)
-
-
-def arm_freedom(subject: Subject) -> dict[Side, float]:
-    """Moment of inertia of each arm about its shoulder without loads over that with the loads that its person knows.
-
-    An arm with a load moves as much as a free one by this factor if both have the same angular momentum.
-    """
-
-    def inertia(model: MultibodyPlant, side: Side) -> float:
-        i = model.GetJointByName(ARMS[side].shoulder_flexion).velocity_start()
-        return float(model.CalcMassMatrix(model.CreateDefaultContext())[i, i])
-
-    free, loaded = kinematics_plant(replace(subject, loads=())), kinematics_plant(subject)
-    return {side: inertia(free, side) / inertia(loaded, side) for side in SIDES}
 
 
 def knee_flexions(skeleton: Skeleton, flexion: float) -> Mapping[Side, float]:

@@ -9,11 +9,12 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.contact import sole_extent
+from humanwalk.body.hanging_arm import hanging_arms
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
-from humanwalk.body.upright import arm_freedom, knee_flexions
+from humanwalk.body.upright import knee_flexions
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import Command
 from humanwalk.choices.start import StartPosture, load_lean
@@ -187,12 +188,13 @@ class BalancedController:
                 self.control_period,
                 sole_extent(world.subject.skeleton),
                 self.knowledge.ground(world.terrain, errors, fitted.planner.feeling),
-                arm_freedom(world.subject),
+                hanging_arms(world.subject),
             ),
             com=world.port("body_observer", "com"),
             ankles=world.port("body_observer", "ankles"),
             foot_forces=world.port("foot_contact", "foot_forces"),
             command=command.GetOutputPort("command"),
+            load=load,
         )
         tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
         posture = self._hanging_arms(world.subject)
@@ -211,7 +213,7 @@ class BalancedController:
 
     def _hanging_arms(self, subject: Subject) -> dict[str, float]:
         """Angles [rad] of hanging arms by joint; one that carries a load is straighter."""
-        elbows = {ARMS[side].elbow: free * self.elbow_flexion for side, free in arm_freedom(subject).items()}
+        elbows = {ARMS[side].elbow: arm.freedom() * self.elbow_flexion for side, arm in hanging_arms(subject).items()}
         return elbows | {arm.wrist: self.wrist_flexion for arm in ARMS.values()}
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:

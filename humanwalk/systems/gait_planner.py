@@ -1,6 +1,7 @@
 """LeafSystem: the step planner, run periodically."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from pydrake.common.value import Value
@@ -8,14 +9,16 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import SIDES, Side
+from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.contact import SoleExtent
+from humanwalk.body.hanging_arm import HangingArm
 from humanwalk.body.upright import passive_ankles, upright
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
-from humanwalk.walking.step_planner import FREE_ARMS, StepPlanner
+from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootTask, WalkingReference
 
 POINTS = ("zmp", "dcm", "dcm_reference", "foothold")
@@ -32,6 +35,7 @@ class GaitPlanner(LeafSystem):
         com, ankles: (6), (30) see BodyObserver.
         foot_forces: (16) see FootForceObserver.
         command: (3) forward and sideways speed [m/s], turn rate [rad/s].
+        load: (4) load that the body carries in addition, see LoadObserver. Optional; default: none.
 
     Outputs (all of them are state; evaluating them does not plan):
         plan: WalkingReference, from initialization on.
@@ -48,7 +52,7 @@ class GaitPlanner(LeafSystem):
         period: float,
         sole: SoleExtent,
         ground: Ground,
-        arm_freedom: Mapping[Side, float] = FREE_ARMS,
+        arms: Mapping[Side, HangingArm],
     ) -> None:
         """Create the planner.
 
@@ -59,10 +63,10 @@ class GaitPlanner(LeafSystem):
             period: Control period [s].
             sole: Extent of a sole.
             ground: What is known of the ground.
-            arm_freedom: Swing of each arm relative to that of an arm without a load.
+            arms: Both arms.
         """
         super().__init__()
-        self._ground = ground
+        self._ground, self._arms = ground, arms
         standing = upright(plant)
         self._planner = StepPlanner(
             parameters,
@@ -74,12 +78,12 @@ class GaitPlanner(LeafSystem):
             sole=sole,
             ground=ground,
             passive_ankles=passive_ankles(plant),
-            arm_freedom=arm_freedom,
         )
         self._com = self.DeclareVectorInputPort("com", 6)
         self._ankles = self.DeclareVectorInputPort("ankles", 30)
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
         self._command = self.DeclareVectorInputPort("command", 3)
+        self._load = self.DeclareVectorInputPort("load", NO_LOAD.size)
         self._memory = self.DeclareAbstractState(Value[object]())
         self._reference = self.DeclareAbstractState(Value[object]())
         self.DeclareStateOutputPort("plan", self._reference)
@@ -111,7 +115,10 @@ class GaitPlanner(LeafSystem):
     def _body(self, context: Context, ground: Ground) -> BodyState:
         ankles = self._ankles.Eval(context).reshape(2, 5, 3)
         forces = self._foot_forces.Eval(context).reshape(2, 8)
-        return BodyState.measured(self._com.Eval(context), ankles, forces, ground)
+        load = self._load.Eval(context) if self._load.HasValue(context) else NO_LOAD
+        body = BodyState.measured(self._com.Eval(context), ankles, forces, ground)
+        right, left = (self._arms[side].freedom(load) for side in SIDES)
+        return replace(body, arm_freedom=(right, left))
 
     def _store(self, state: State, memory: PlannerState, reference: WalkingReference) -> EventStatus:
         state.get_mutable_abstract_state(int(self._memory)).set_value(memory)

@@ -8,7 +8,7 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -36,10 +36,6 @@ MIN_FORCE = 50.0
 """Vertical force from which on the center of pressure under a foot is known [N] (our choice)."""
 
 
-FREE_ARMS: Mapping[Side, float] = dict.fromkeys(SIDES, 1.0)
-"""Swing of arms without loads."""
-
-
 class Balance(NamedTuple):
     """Zero-moment point, centroidal moment pivot, measured DCM and nominal DCM [m]."""
 
@@ -62,7 +58,6 @@ class StepPlanner:
         sole: Extent of a sole.
         ground: What is known of the ground.
         passive_ankles: Sides without muscles at the ankle.
-        arm_freedom: Swing of each arm relative to that of an arm without a load.
     """
 
     def __init__(
@@ -76,14 +71,13 @@ class StepPlanner:
         sole: SoleExtent,
         ground: Ground,
         passive_ankles: Collection[Side] = (),
-        arm_freedom: Mapping[Side, float] = FREE_ARMS,
     ) -> None:
         self.parameters = p = parameters
         com_height = p.height.walking * standing_com_height
         self.frequency = natural_frequency(com_height)
         self._standing_com_height, self._leg_length = standing_com_height, leg_length
         self._period, self._sole, self._ankle_height = period, sole, ankle_height
-        self._passive_ankles, self._arm_freedom = passive_ankles, arm_freedom
+        self._passive_ankles = passive_ankles
         self._footholds = FootholdPlanner(sole, p.footholds, p.placement, p.pacing, com_height)
         self._phases = PhaseTransitions(p, ankle_height, first_swing, ground, self._footholds, passive_ankles)
 
@@ -271,7 +265,7 @@ class StepPlanner:
         """The reference, with pelvis, chest and arms that rotate with the legs."""
         rotation, timing = self.parameters.rotation, state.timing
         lead, lead_rate = foot_lead(body, state.heading)
-        right, left = (rotation.arms * self._arm_freedom[side] for side in SIDES)
+        right, left = (rotation.arms * freedom for freedom in body.arm_freedom)
         # The trunk turns at the rate of the path, the headings of the steps by one step's turn at touchdown.
         facing = state.heading + (state.turn * (state.elapsed - 0.5 * timing.step) if state.is_stepping else 0.0)
         return WalkingReference(

@@ -87,6 +87,7 @@ class BodyState:
         com, com_velocity: Center of mass over the level plane, complex [m, m/s].
         com_height: Center of mass in W [m].
         right, left: The feet.
+        arm_freedom: Swing of the right and the left arm relative to that of a free arm; less with a load in the hand.
     """
 
     com: complex
@@ -94,6 +95,7 @@ class BodyState:
     com_height: float
     right: FootState
     left: FootState
+    arm_freedom: tuple[float, float] = (1.0, 1.0)
 
     def foot(self, side: Side) -> FootState:
         """The foot of a side."""
@@ -114,8 +116,8 @@ class BodyState:
         motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), foot_forces[:, FORCE_Z])
         axes = (forward_W, normal_W, foot_forces[:, PRESSURE])
         x, y, z, vx, vy, _ = com.tolist()
-        feet = map(_foot, *(part.tolist() for part in motions), *axes)
-        return BodyState(complex(x, y), complex(vx, vy), z, *feet)
+        right, left = map(_foot, *(part.tolist() for part in motions), *axes)
+        return BodyState(complex(x, y), complex(vx, vy), z, right, left)
 
 
 def _foot(

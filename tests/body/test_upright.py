@@ -9,12 +9,11 @@ from hypothesis import strategies as st
 from humanwalk.body import human
 from humanwalk.body.devices import AnkleProsthesis
 from humanwalk.body.impairments import HipContracture, ShortLeg, StiffKnee
-from humanwalk.body.limbs import LEGS, other_side
-from humanwalk.body.loads import Backpack, Suitcase
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
-from humanwalk.body.upright import arm_freedom, knee_flexions, passive_ankles, upright
+from humanwalk.body.upright import knee_flexions, passive_ankles, upright
 from humanwalk.sides import SIDES, Side
 
 
@@ -69,21 +68,3 @@ def test_a_knee_locked_in_flexion_makes_a_leg_shorter() -> None:
         # Of two parts of about equal length.
         assert locked.leg_length == pytest.approx(healthy.leg_length * math.cos(0.5 * angle), rel=0.001)
         assert locked.com_height == pytest.approx(healthy.com_height - healthy.leg_length + locked.leg_length)
-
-
-def test_arms_without_a_load_are_free() -> None:
-    assert arm_freedom(Subject()) == {"Right": 1.0, "Left": 1.0}
-    assert arm_freedom(Subject(loads=(Backpack(20.0),))) == pytest.approx({"Right": 1.0, "Left": 1.0})
-
-
-@given(mass=st.floats(0.1, 30.0), side=st.sampled_from(SIDES))
-def test_an_arm_is_the_less_free_the_more_it_carries(mass: float, side: Side) -> None:
-    """Its moment of inertia grows with the mass."""
-    light, heavy = (arm_freedom(Subject(loads=(Suitcase(m, side),))) for m in (mass, 2.0 * mass))
-    assert 1.0 > light[side] > heavy[side] > 0.0
-    assert 1.0 / heavy[side] - 1.0 == pytest.approx(2.0 * (1.0 / light[side] - 1.0))
-    assert light[other_side(side)] == pytest.approx(1.0)
-
-
-def test_an_arm_is_free_if_its_person_does_not_know_of_its_load() -> None:
-    assert arm_freedom(Subject(loads=(Suitcase(8.0, known=False),))) == {"Right": 1.0, "Left": 1.0}

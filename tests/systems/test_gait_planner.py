@@ -7,6 +7,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
 from humanwalk.body.contact import SoleExtent
+from humanwalk.body.hanging_arm import hanging_arms
+from humanwalk.body.subject import Subject
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
@@ -18,7 +20,8 @@ PERIOD = 0.004
 
 @pytest.fixture
 def planner(plant: MultibodyPlant) -> GaitPlanner:
-    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, SoleExtent(0.055, 0.211, 0.048), Plane())
+    sole, arms = SoleExtent(0.055, 0.211, 0.048), hanging_arms(Subject())
+    return GaitPlanner(plant, StepPlannerParameters(), "Right", PERIOD, sole, Plane(), arms)
 
 
 def simulator_of(planner: GaitPlanner, plant: MultibodyPlant, command: tuple[float, ...]) -> Simulator:
@@ -43,6 +46,7 @@ def test_ports(planner: GaitPlanner) -> None:
         ("ankles", 30),
         ("foot_forces", 16),
         ("command", 3),
+        ("load", 4),
     ]
     outputs = [planner.get_output_port(i) for i in range(planner.num_output_ports())]
     assert [port.get_name() for port in outputs] == ["plan", "phase", "contact_schedule", "balance"]
