@@ -19,7 +19,7 @@ LEVELS = {
     "controller.thesis.balance.foot_force.enabled": "true",
     "controller.thesis.balance.upper_body.enabled": "true",
 }
-ENDINGS = ("_m", "_m_s", "_N", "_N_m", "_rad", "_rad_s")
+ENDINGS = ("_m", "_m_s", "_N", "_N_m", "_rad", "_rad_s", "_kg")
 WITHOUT_UNIT = (
     r"\.((reference_)?quaternion_[wxyz]|saturated|loaded|friction_use|phase|scheduled|ik_residual|ik_iterations"
     r"|ik_converged|solved|failures(_in_a_row)?)$"

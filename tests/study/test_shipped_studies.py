@@ -44,7 +44,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("normative_seeds", 20),
         ("subjects_adults", 100),
         ("subjects_children", 40),
-        ("subjects_loads", 40),
+        ("subjects_loads", 80),
         ("subjects_pushes", 40),
         ("terrain", 400),
         ("terrain_rough", 40),
