@@ -8,6 +8,7 @@ from humanwalk.body import SIDES
 from humanwalk.body.carried_load import NO_LOAD, CarriedLoad
 from humanwalk.body.limbs import LEGS
 from humanwalk.numerics import Array
+from humanwalk.systems.load_observer import load_at
 from humanwalk.systems.signal import Signal, xyz
 
 
@@ -53,7 +54,7 @@ class BodyObserver(LeafSystem):
         state = self._state.Eval(context)
         if not np.array_equal(state, self._plant.GetPositionsAndVelocities(self._plant_context)):
             self._plant.SetPositionsAndVelocities(self._plant_context, state)
-        self._carried.set(self._load.Eval(context) if self._load.HasValue(context) else NO_LOAD)
+        self._carried.set(load_at(self._load, context))
         return self._plant_context
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:

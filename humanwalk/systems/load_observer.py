@@ -3,13 +3,20 @@
 import math
 
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, DiscreteValues, EventStatus, LeafSystem
+from pydrake.systems.framework import Context, DiscreteValues, EventStatus, InputPort, LeafSystem
 
+from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.limbs import CHEST
 from humanwalk.control.felt_load import LoadFeeling, felt_load, limited, unexplained_wrench
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.systems.signal import Signal, xyz
+
+
+def load_at(port: InputPort, context: Context) -> Array:
+    """The load at an optional input port, shape (4,); none where it is not connected."""
+    load: Array = port.Eval(context) if port.HasValue(context) else NO_LOAD
+    return load
 
 
 class LoadObserver(LeafSystem):

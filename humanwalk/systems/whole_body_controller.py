@@ -14,6 +14,7 @@ from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
+from humanwalk.systems.load_observer import load_at
 from humanwalk.systems.signal import Signal
 from humanwalk.walking.walking_reference import WalkingReference
 
@@ -97,7 +98,7 @@ class WholeBodyController(LeafSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         reference = self._plan.Eval(context)
-        load = self._load.Eval(context) if self._load.HasValue(context) else NO_LOAD
+        load = load_at(self._load, context)
         body = self._assisted(context, self._dynamics.at(self._state.Eval(context), load))
         q, v = body.q[self._q], body.v[6:]
         posture = self._posture(reference)

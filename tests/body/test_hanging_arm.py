@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.hanging_arm import hanging_arms
 from humanwalk.body.limbs import other_side
 from humanwalk.body.loads import Backpack, Suitcase
@@ -15,9 +16,8 @@ from humanwalk.sides import SIDES, Side
 MASSES, SIDE = st.floats(0.1, 30.0), st.sampled_from(SIDES)
 
 
-def freedom(subject: Subject, load: Array | None = None) -> dict[Side, float]:
-    arms = hanging_arms(subject).items()
-    return {side: arm.freedom() if load is None else arm.freedom(load) for side, arm in arms}
+def freedom(subject: Subject, load: Array = NO_LOAD) -> dict[Side, float]:
+    return {side: arm.freedom(load) for side, arm in hanging_arms(subject).items()}
 
 
 def test_arms_without_a_load_are_free() -> None:
