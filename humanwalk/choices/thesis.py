@@ -53,8 +53,9 @@ class GaitParameters:
     first_swing: Literal["Right", "Left"] = "Right"
     """Leg that swings first."""
 
-    footholds: FootholdSearch = FootholdSearch()
-    """Where the feet stand on ground that is not level; `same_face` has no effect, since no foothold changes."""
+    footholds: FootholdSearch = FootholdSearch(max_overhang=0.086)
+    """Where the feet stand on ground that is not level; `same_face` has no effect, since no foothold changes. A third
+    of the reference sole may protrude (our choice), since the body is held."""
 
     clearance: ClearanceParameters = ClearanceParameters()
     """How the feet clear such ground; `hold` has no effect, since no foot corrects its place."""

@@ -6,6 +6,7 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -20,10 +21,10 @@ from humanwalk.terrain.face import ENDLESS, Face
 from humanwalk.terrain.terrain import Ground
 
 FREE = 1e-3
-"""Height above a face up to which ground beside it is part of it [m]."""
+"""Height above a face up to which ground beside it is part of it, and distance by which a sole may touch it [m]."""
 
-MAX_OVERHANG = 1.0 / 3.0
-"""Largest share of a sole beyond the edges of a face that is too short for it, as people's heels are on stairs."""
+LENGTHWISE = math.sqrt(0.5)
+"""Least component of the heading along an edge of a face for which the sole lies lengthwise there."""
 
 LEVEL = Face((-ENDLESS, -ENDLESS), (ENDLESS, ENDLESS), 0.0, (0.0, 0.0), 0.7, (0.86, 0.87, 0.86))
 """The plane z = 0."""
@@ -35,6 +36,14 @@ class FootholdSearch:
 
     edge_margin: float = quantity(0.02, "m", 0.0, 0.1)
     """Distance of the sole from the edges of its face, where the face is long enough."""
+
+    heel_room: float = quantity(0.01, "m", 0.0, 0.1)
+    """Distance of the heel from the edge behind it on a face of about the length of the sole. A heel that is nearer
+    catches the edge of the tread above (docs/decisions/0047-short-treads.md)."""
+
+    max_overhang: float = quantity(0.01, "m", 0.0, 0.2)
+    """Largest length by which a sole is longer than its face. Up stairs walkers fall with 2 cm
+    (docs/decisions/0047-short-treads.md)."""
 
     max_rise: float = quantity(0.25, "m", 0.0, 0.6)
     """Largest difference in height between the feet."""
@@ -80,38 +89,59 @@ def _height(face: Face, point: complex) -> float:
     return face.intercept + face.gradient[0] * point.real + face.gradient[1] * point.imag
 
 
-def places_on(face: Face, desired: complex, yaw: float, sole: SoleExtent, margin: float) -> list[complex]:
-    """Return the ankles nearest to a desired one with which the sole lies on a face.
+def places_on(face: Face, desired: complex, yaw: float, sole: SoleExtent, search: FootholdSearch) -> list[complex]:
+    """Return the ankles nearest to a desired one with which the sole lies on a face, the preferred one first.
 
     Args:
         face: The face.
         desired: Desired position of the ankle.
         yaw: Heading of the foot.
         sole: Extent of the sole.
-        margin: Desired distance of the sole from the edges; where there is no room for it, the sole is in the middle.
+        search: Distances from the edges.
 
     Returns:
-        One ankle; on a face that is too short for the sole two, with which it protrudes at either end; none if more
-        than `MAX_OVERHANG` of it would protrude.
+        One ankle. Two on a face less than `heel_room` longer than the sole: the heel keeps its distance, and the toes
+        may protrude; or the sole is in the middle of a face that is long enough for it, and its heel protrudes from a
+        shorter one. None on a face that is shorter than the sole by more than `max_overhang`.
     """
     u, across = cmath.exp(1j * yaw), 1j * sole.half_width
     corners = [u * (x + y) for x in (-sole.back, sole.front) for y in (-across, across)]
-    choices = []
-    for low, high, parts, value in (
-        (face.lower[0], face.upper[0], [corner.real for corner in corners], desired.real),
-        (face.lower[1], face.upper[1], [corner.imag for corner in corners], desired.imag),
-    ):
-        first, last = low - min(parts), high - max(parts)
-        if last - first < -MAX_OVERHANG * (sole.back + sole.front):
-            return []
-        kept = min(margin, 0.5 * (last - first))
-        choices.append([clip(value, first + kept, last - kept)] if last >= first else [first, last])
-    return [complex(x, y) for x in choices[0] for y in choices[1]]
+    xs, ys = (
+        _places_along(low - min(parts), high - max(parts), value, ahead, search)
+        for low, high, parts, value, ahead in (
+            (face.lower[0], face.upper[0], [corner.real for corner in corners], desired.real, u.real),
+            (face.lower[1], face.upper[1], [corner.imag for corner in corners], desired.imag, u.imag),
+        )
+    )
+    return [complex(x, y) for x in xs for y in ys]
+
+
+def _places_along(first: float, last: float, desired: float, ahead: float, search: FootholdSearch) -> list[float]:
+    """`places_on` along one edge of a face.
+
+    Args:
+        first, last: Places at which the sole ends at the lower and at the upper end of the edge.
+        desired: Desired place.
+        ahead: Component of the heading.
+        search: Distances from the edges.
+    """
+    room = last - first
+    if room < -search.max_overhang:
+        return []
+    heel = search.heel_room if abs(ahead) >= LENGTHWISE else 0.0
+    if room >= heel:
+        kept = min(search.edge_margin, 0.5 * room)
+        return [clip(desired, first + kept, last - kept)]
+    # With a room of `heel_room` this is the middle, so that the place does not jump.
+    heel = min(heel, heel - 0.5 * room)
+    rear, front, sign = (first, last, 1.0) if ahead > 0.0 else (last, first, -1.0)
+    return [rear + sign * heel, 0.5 * (first + last) if room >= 0.0 else front]
 
 
 def has_free_ground(ground: Ground, place: complex, face: Face, yaw: float, sole: SoleExtent) -> bool:
     """Whether nothing under a sole on the plane of a face stands out of it."""
-    x, y = np.linspace(-sole.back, sole.front, 9), np.linspace(-sole.half_width, sole.half_width, 4)
+    x = np.linspace(FREE - sole.back, sole.front - FREE, 9)
+    y = np.linspace(FREE - sole.half_width, sole.half_width - FREE, 4)
     points = place + cmath.exp(1j * yaw) * (x[:, None] + 1j * y).ravel()
     xy = np.stack((points.real, points.imag), axis=-1)
     return bool((ground.height(xy) <= face.height(xy) + FREE).all())
@@ -148,7 +178,7 @@ def nearest_foothold(
     """
     here = Foothold.on(ground, desired)
     is_current = current is None or here.face.covers_as(current)
-    has_room = places_on(here.face, desired, yaw, sole, search.edge_margin) == [desired]
+    has_room = places_on(here.face, desired, yaw, sole, search) == [desired]
     if is_current and has_room and is_reachable(desired, here.ground):
         return here
     expected = desired if expected is None else expected
@@ -157,7 +187,7 @@ def nearest_foothold(
         same = current is not None and face.covers_as(current)
         if is_final and not same:
             continue
-        places = places_on(face, desired, yaw, sole, search.edge_margin)
+        places = places_on(face, desired, yaw, sole, search)
         for place in places:
             off, height = (place - expected) / u, _height(face, place)
             if max(abs(off.real), abs(off.imag)) > search.distance or not is_reachable(place, height):
@@ -168,4 +198,5 @@ def nearest_foothold(
             cost += search.height_weight * abs(height - level)
             if cost < least:
                 best, least = Foothold(place, height, face), cost
+            break
     return best

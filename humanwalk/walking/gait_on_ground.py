@@ -259,7 +259,7 @@ class GaitOnGround(WalkingGait):
             )
 
         found = nearest_foothold(self._ground, place, 0.0, sole, self._search, is_reachable, level=level)
-        on_face = places_on(found.face, found.position, 0.0, sole, self._search.edge_margin)
+        on_face = places_on(found.face, found.position, 0.0, sole, self._search)
         if found.position not in on_face or not is_reachable(found.position, found.ground):
             raise ParameterError(
                 f"controller.thesis.gait.path.step_length: {p.step_length:g} has no foothold for step {k}, at "

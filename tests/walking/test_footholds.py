@@ -13,9 +13,10 @@ from humanwalk.numerics import Array
 from humanwalk.terrain import Course, Face, Plane
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Obstacle, Stairs, Stones
-from humanwalk.walking.footholds import LEVEL, MAX_OVERHANG, Foothold, FootholdSearch, nearest_foothold, places_on
+from humanwalk.walking.footholds import LEVEL, Foothold, FootholdSearch, nearest_foothold, places_on
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
+LENGTH = SOLE.back + SOLE.front
 SEARCH = FootholdSearch()
 yaws = st.floats(-3.1, 3.1)
 points = st.builds(complex, st.floats(-2.0, 2.0), st.floats(-1.0, 1.0))
@@ -38,37 +39,63 @@ def anywhere(place: complex, height: float) -> bool:
 
 @given(points, yaws)
 def test_on_a_large_face_the_sole_keeps_its_distance_from_the_edges(desired: complex, yaw: float) -> None:
-    (place,) = places_on(face(1.0), desired, yaw, SOLE, SEARCH.edge_margin)
+    (place,) = places_on(face(1.0), desired, yaw, SOLE, SEARCH)
     assert face(1.0).margin(corners(place, yaw)).min() >= SEARCH.edge_margin - 1e-9
 
 
 @given(points, yaws)
 def test_a_place_with_enough_room_is_not_moved(desired: complex, yaw: float) -> None:
     if face(1.0).margin(corners(desired, yaw)).min() > SEARCH.edge_margin:
-        assert places_on(face(1.0), desired, yaw, SOLE, SEARCH.edge_margin) == [desired]
+        assert places_on(face(1.0), desired, yaw, SOLE, SEARCH) == [desired]
 
 
 def test_on_a_face_without_room_for_the_margin_the_sole_is_in_the_middle() -> None:
-    (place,) = places_on(face(0.28), 0.0, 0.0, SOLE, SEARCH.edge_margin)
+    (place,) = places_on(face(0.28), 0.0, 0.0, SOLE, SEARCH)
     assert place.real - SOLE.back == pytest.approx(0.28 - (place.real + SOLE.front))
 
 
-def test_on_a_face_that_is_too_short_the_sole_protrudes_at_either_end() -> None:
-    back, front = places_on(face(0.24), 0.0, 0.0, SOLE, SEARCH.edge_margin)
-    assert (back.real - SOLE.back, front.real + SOLE.front) == pytest.approx((0.0, 0.24))
+SHORT = st.floats(LENGTH - SEARCH.max_overhang + 1e-6, LENGTH + SEARCH.heel_room - 1e-6)
+"""Lengths of faces on which the heel cannot keep its distance without the toes protruding, or nearly so."""
+
+
+@given(SHORT)
+def test_on_a_short_face_the_heel_keeps_its_distance_or_the_toes_are_on_the_face(length: float) -> None:
+    heel_first, toes_first = places_on(face(length), 0.0, 0.0, SOLE, SEARCH)
+    behind, protruding = heel_first.real - SOLE.back, toes_first.real + SOLE.front - length
+    assert 0.5 * SEARCH.heel_room - 1e-9 <= behind <= SEARCH.heel_room + 1e-9
+    assert protruding <= 1e-9
+
+
+@given(SHORT)
+def test_a_foot_that_walks_back_has_the_mirrored_places(length: float) -> None:
+    there = places_on(face(length), 0.0, 0.0, SOLE, SEARCH)
+    back = places_on(face(length), 0.0, np.pi, SOLE, SEARCH)
+    np.testing.assert_allclose([length - place.real for place in back], [place.real for place in there], atol=1e-9)
+
+
+@pytest.mark.parametrize("room", [0.0, SEARCH.heel_room])
+def test_places_do_not_jump_with_the_length_of_a_face(room: float) -> None:
+    less, more = (places_on(face(LENGTH + room + d), 0.0, 0.0, SOLE, SEARCH) for d in (-1e-6, 1e-6))
+    assert more[0] == pytest.approx(less[0], abs=1e-5)
+    assert more[-1] == pytest.approx(less[-1], abs=1e-5)
 
 
 @pytest.mark.parametrize("direction", ["up", "down"])
-def test_on_short_treads_the_sole_protrudes_over_the_lower_one(direction: Any) -> None:
-    course = Course(pieces=(Stairs(tread=0.24, direction=direction),), run_up=0.5)
-    foothold = nearest_foothold(course, complex(1.0), 0.0, SOLE, SEARCH, anywhere)
-    assert (course.height(corners(foothold.position, 0.0)) <= foothold.ground + 1e-9).all()
+@given(tread=SHORT, ahead=st.floats(0.8, 1.6))
+def test_on_short_treads_the_sole_protrudes_over_the_lower_one(direction: Any, tread: float, ahead: float) -> None:
+    course = Course(pieces=(Stairs(tread=tread, direction=direction, number=8),), run_up=0.5)
+    foothold = nearest_foothold(course, complex(ahead), 0.0, SOLE, SEARCH, anywhere)
+    x, y = np.meshgrid(np.linspace(2e-3 - SOLE.back, SOLE.front - 2e-3, 50), (-SOLE.half_width, SOLE.half_width))
+    under = np.stack((foothold.position.real + x.ravel(), y.ravel()), axis=-1)
+    assert (course.height(under) <= foothold.ground + 1e-9).all()
+    heel = foothold.position.real - SOLE.back - foothold.face.lower[0]
+    assert heel >= (0.5 * SEARCH.heel_room if direction == "down" else -SEARCH.max_overhang) - 1e-9
 
 
-def test_a_face_from_which_more_than_a_third_of_the_sole_protrudes_is_no_foothold() -> None:
-    length = SOLE.back + SOLE.front
-    assert places_on(face((1.0 - MAX_OVERHANG) * length + 0.001), 0.0, 0.0, SOLE, 0.02)
-    assert not places_on(face((1.0 - MAX_OVERHANG) * length - 0.001), 0.0, 0.0, SOLE, 0.02)
+def test_a_face_that_is_much_shorter_than_the_sole_is_no_foothold() -> None:
+    shortest = LENGTH - SEARCH.max_overhang
+    assert places_on(face(shortest + 1e-6), 0.0, 0.0, SOLE, SEARCH)
+    assert not places_on(face(shortest - 1e-6), 0.0, 0.0, SOLE, SEARCH)
 
 
 COURSES = [

@@ -75,6 +75,33 @@ def test_it_walks_down_stairs_that_begin_right_at_the_start(speed: float, seed: 
     assert ahead > 0.5 + 4 * 0.28
 
 
+TREAD = 0.28
+"""0.9 cm shorter than the soles of a man of 110 kg and 1.95 m."""
+
+
+@pytest.mark.parametrize("direction, sign", [("up", 1.0), ("down", -1.0)])
+def test_a_tall_man_walks_on_treads_that_are_a_little_shorter_than_his_soles(direction: str, sign: float) -> None:
+    flight = f"{{direction: {direction}, rise: 0.185, tread: {TREAD}, number: 3}}"
+    man = {"subject.mass": "110", "subject.stature": "1.95", "duration": "7.5"}
+    course = {"terrain": f"{{course: {{run_up: 0.5, pieces: [{{stairs: {flight}}}, flat]}}}}"}
+    forward = {"controller.balanced.command.points.0.forward": "0.5"}
+    outcome = simulate(load_scenario("walk", {**man, **course, **forward}))
+    assert outcome.end == "completed"
+    x, z = (outcome.signals[f"com.{axis}_m"].to_numpy() for axis in "xz")
+    assert x[-1] > 0.5 + 3 * TREAD
+    assert z[-1] - z[0] == pytest.approx(sign * 3 * 0.185, abs=0.06)
+
+
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_it_stands_before_treads_that_are_much_shorter_than_its_soles(direction: str) -> None:
+    flight = f"{{direction: {direction}, rise: 0.18, tread: 0.24, number: 3}}"
+    course = {"terrain": f"{{course: {{run_up: 0.5, pieces: [{{stairs: {flight}}}, flat]}}}}"}
+    forward = {"controller.balanced.command.points.0.forward": "0.5"}
+    outcome = simulate(load_scenario("walk", {"duration": "6", **course, **forward}))
+    assert outcome.end == "completed"
+    assert outcome.signals["com.x_m"].to_numpy()[-1] < 0.5
+
+
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_on_stairs_it_stops_with_both_feet_on_one_tread(direction: str) -> None:
     flight = f"{{direction: {direction}, rise: 0.17, tread: 0.28, number: 8}}"
