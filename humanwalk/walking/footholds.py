@@ -21,7 +21,8 @@ from humanwalk.terrain.face import ENDLESS, Face
 from humanwalk.terrain.terrain import Ground
 
 FREE = 1e-3
-"""Height above a face up to which ground beside it is part of it, and distance by which a sole may touch it [m]."""
+"""Tolerance [m]: ground up to this height above a face is part of it, and ground up to this distance inside the outline
+of a sole is beside the sole."""
 
 LENGTHWISE = math.sqrt(0.5)
 """Least component of the heading along an edge of a face for which the sole lies lengthwise there."""
