@@ -25,7 +25,7 @@ FREE = 1e-3
 of a sole is beside the sole."""
 
 LENGTHWISE = math.sqrt(0.5)
-"""Least component of the heading along an edge of a face for which the sole lies lengthwise there."""
+"""Smallest component of the heading along an axis of a face at which the sole counts as lengthwise there."""
 
 LEVEL = Face((-ENDLESS, -ENDLESS), (ENDLESS, ENDLESS), 0.0, (0.0, 0.0), 0.7, (0.86, 0.87, 0.86))
 """The plane z = 0."""
@@ -43,7 +43,7 @@ class FootholdSearch:
     catches the edge of the tread above (docs/decisions/0047-short-treads.md)."""
 
     max_overhang: float = quantity(0.01, "m", 0.0, 0.2)
-    """Largest length by which a sole is longer than its face. Up stairs walkers fall with 2 cm
+    """Largest excess of the length of a sole over that of its face. With 2 cm walkers fell on stairs up
     (docs/decisions/0047-short-treads.md)."""
 
     max_rise: float = quantity(0.25, "m", 0.0, 0.6)
@@ -118,11 +118,11 @@ def places_on(face: Face, desired: complex, yaw: float, sole: SoleExtent, search
 
 
 def _places_along(first: float, last: float, desired: float, ahead: float, search: FootholdSearch) -> list[float]:
-    """`places_on` along one edge of a face.
+    """Return the coordinates of `places_on` along one axis of a face, the preferred one first.
 
     Args:
-        first, last: Places at which the sole ends at the lower and at the upper end of the edge.
-        desired: Desired place.
+        first, last: Coordinates at which the sole ends at the lower and at the upper edge.
+        desired: Desired coordinate.
         ahead: Component of the heading.
         search: Distances from the edges.
     """
@@ -133,7 +133,7 @@ def _places_along(first: float, last: float, desired: float, ahead: float, searc
     if room >= heel:
         kept = min(search.edge_margin, 0.5 * room)
         return [clip(desired, first + kept, last - kept)]
-    # With a room of `heel_room` this is the middle, so that the place does not jump.
+    # With a room of `heel_room` this is the middle, so that the foothold does not jump.
     heel = min(heel, heel - 0.5 * room)
     rear, front, sign = (first, last, 1.0) if ahead > 0.0 else (last, first, -1.0)
     return [rear + sign * heel, 0.5 * (first + last) if room >= 0.0 else front]

@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body.contact import SoleExtent
+from humanwalk.choices.thesis import GaitParameters
 from humanwalk.numerics import Array
 from humanwalk.terrain import Course, Face, Plane
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Obstacle, Stairs, Stones
-from humanwalk.walking.footholds import LEVEL, Foothold, FootholdSearch, nearest_foothold, places_on
+from humanwalk.walking.footholds import FREE, LEVEL, Foothold, FootholdSearch, nearest_foothold, places_on
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 LENGTH = SOLE.back + SOLE.front
@@ -27,6 +28,12 @@ def corners(ankle: complex, yaw: float) -> Array:
     u = cmath.exp(1j * yaw)
     local = [complex(x, y) for x in (-SOLE.back, SOLE.front) for y in (-SOLE.half_width, SOLE.half_width)]
     return np.array([((ankle + u * corner).real, (ankle + u * corner).imag) for corner in local])
+
+
+def under(foothold: Foothold) -> Array:
+    """Points under a sole with heading 0, x and y [m], shape (points, 2). Its outline may touch a riser."""
+    x, y = np.meshgrid(np.linspace(FREE - SOLE.back, SOLE.front - FREE, 50), (-SOLE.half_width, SOLE.half_width))
+    return np.stack((foothold.position.real + x.ravel(), foothold.position.imag + y.ravel()), axis=-1)
 
 
 def face(length: float, width: float = 1.0) -> Face:
@@ -85,11 +92,18 @@ def test_places_do_not_jump_with_the_length_of_a_face(room: float) -> None:
 def test_on_short_treads_the_sole_protrudes_over_the_lower_one(direction: Any, tread: float, ahead: float) -> None:
     course = Course(pieces=(Stairs(tread=tread, direction=direction, number=8),), run_up=0.5)
     foothold = nearest_foothold(course, complex(ahead), 0.0, SOLE, SEARCH, anywhere)
-    x, y = np.meshgrid(np.linspace(2e-3 - SOLE.back, SOLE.front - 2e-3, 50), (-SOLE.half_width, SOLE.half_width))
-    under = np.stack((foothold.position.real + x.ravel(), y.ravel()), axis=-1)
-    assert (course.height(under) <= foothold.ground + 1e-9).all()
+    assert (course.height(under(foothold)) <= foothold.ground + 1e-9).all()
     heel = foothold.position.real - SOLE.back - foothold.face.lower[0]
     assert heel >= (0.5 * SEARCH.heel_room if direction == "down" else -SEARCH.max_overhang) - 1e-9
+
+
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_for_the_held_walk_a_third_of_the_sole_may_protrude_over_the_lower_tread(direction: Any) -> None:
+    held = GaitParameters().footholds
+    assert held.max_overhang == pytest.approx(LENGTH / 3.0, rel=0.05)
+    course = Course(pieces=(Stairs(tread=0.24, direction=direction),), run_up=0.5)
+    foothold = nearest_foothold(course, complex(1.0), 0.0, SOLE, held, anywhere)
+    assert (course.height(under(foothold)) <= foothold.ground + 1e-9).all()
 
 
 def test_a_face_that_is_much_shorter_than_the_sole_is_no_foothold() -> None:
