@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
-from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, tag_of
+from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
 from humanwalk.yaml_text import line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
@@ -238,7 +238,10 @@ def _build(kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
             )
         return value
     if origin is tuple:
-        return tuple(_build(typing.get_args(kind)[0], entry, at) for entry, at in _entries(value, place))
+        of = typing.get_args(kind)[0]
+        fields = dataclasses.fields(of) if dataclasses.is_dataclass(of) else ()
+        allowed = f"groups of {', '.join(field.name for field in fields)}" if fields else "values"
+        return tuple(_build(of, entry, at) for entry, at in _entries(value, place, allowed))
     if origin in (dict, Mapping):
         if not isinstance(value, dict):
             raise ParameterError(f"{place}: {shown(value)} is not a mapping; write name: value pairs")
@@ -249,9 +252,12 @@ def _build(kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
     return _build_scalar(kind, value, place)
 
 
-def _entries(value: Any, place: _Place) -> list[tuple[Any, _Place]]:
+def _entries(value: Any, place: _Place, allowed: str) -> list[tuple[Any, _Place]]:
+    """Entries of a list and their places; `allowed` says in an error what they are."""
     if not isinstance(value, list | tuple):
-        raise ParameterError(f"{place}: {shown(value)} is not a list; write entries that begin with a dash")
+        raise ParameterError(
+            f"{place}: {shown(value)} is not a list; allowed: a list of {allowed}; begin each entry with a dash"
+        )
     if len(value) > MAX_ENTRIES:
         raise ParameterError(f"{place}: {len(value)} entries; allowed: up to {MAX_ENTRIES}; write fewer")
     return [(entry, place / str(i)) for i, entry in enumerate(value)]
@@ -281,8 +287,11 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, defaul
             }
         elif "choice_list" in metadata:
             arguments[key] = tuple(
-                _build_choice(metadata["choice_list"], item, at) for item, at in _entries(entry, place / name)
+                _build_choice(metadata["choice_list"], item, at)
+                for item, at in _entries(entry, place / name, ", ".join(metadata["choice_list"]))
             )
+        elif "unit" in metadata:
+            arguments[key] = _build_scalar(hints[key], entry, place / name, f"allowed: {range_text(**metadata)}; ")
         else:
             group = fields[key].default if default is None else getattr(default, key)
             arguments[key] = _build(hints[key], entry, place / name, group)
@@ -369,12 +378,13 @@ def _build_any(value: Any, place: _Place) -> Any:
     )
 
 
-def _build_scalar(kind: Any, value: Any, place: _Place) -> Any:
+def _build_scalar(kind: Any, value: Any, place: _Place, allowed: str = "") -> Any:
+    """A number, true, false or text; `allowed` is the part of an error that says which values are."""
     wanted = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}[kind]
     if isinstance(value, int) and value.bit_length() > 64:
-        raise ParameterError(f"{place}: {shown(value)} is out of range; write a smaller number")
+        raise ParameterError(f"{place}: {shown(value)} is out of range; {allowed}write a smaller number")
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-        raise ParameterError(f"{place}: {shown(value)} is not {wanted}; write {wanted}")
+        raise ParameterError(f"{place}: {shown(value)} is not {wanted}; {allowed}write {wanted}")
     return value

@@ -164,10 +164,13 @@ def require_in_range(name: str, value: float, unit: str, low: float, high: float
     """
     if math.isfinite(value) and low <= value <= high:
         return
-    allowed = f"allowed: {low:g} to {high:g} {unit}".rstrip()
-    raise ParameterError(
-        f"{name}: {value:g} is out of range; {allowed}; {_fix(value, unit if other_units else '', low, high)}"
-    )
+    fix = _fix(value, unit if other_units else "", low, high)
+    raise ParameterError(f"{name}: {value:g} is out of range; allowed: {range_text(unit, low, high)}; {fix}")
+
+
+def range_text(unit: str, low: float, high: float) -> str:
+    """A range with its unit, for messages."""
+    return f"{low:g} to {high:g} {unit}".rstrip()
 
 
 def _fix(value: float, unit: str, low: float, high: float) -> str:
