@@ -9,7 +9,6 @@ import csv
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +18,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from humanwalk.body.subject import Subject
 from humanwalk.measures.curves import JOINTS
 from humanwalk.measures.walk_measures import MEASURES, Pace
+from humanwalk.quantity import GRAVITY
 from humanwalk.study.row import likeness_columns
 from humanwalk.study.study import load_study
 
@@ -126,17 +125,14 @@ def _texts(values: Sequence[float]) -> str:
 
 
 def _within_people(name: str, form: str) -> Goal:
-    """A measure that has to be within the human range at the speed of the row."""
+    """A measure that has to be within the human range at the speed and for the leg length of the row."""
     (kind,) = (kind for kind in MEASURES if kind.name == name)
 
-    @cache
-    def limits_at(speed: float) -> Limits:
-        people = kind.people(Pace(speed, Subject().skeleton.hip_height))
-        assert people is not None
-        return people.low, people.high
-
     def limits(row: Row) -> list[Limits]:
-        return [limits_at(row["likeness.speed_m_s"])]
+        speed = row["likeness.speed_m_s"]
+        people = kind.people(Pace(speed, (speed / row["likeness.dimensionless_speed"]) ** 2 / GRAVITY))
+        assert people is not None
+        return [(people.low, people.high)]
 
     heading = f"{name} [{kind.unit}]" if kind.unit else name
     return Goal(heading, _values(kind.column), Target("human 1 SD", limits), form=form)
@@ -195,26 +191,28 @@ def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]
 
     A run that fell, or whose strides cannot be compared, has no values.
     """
-    compared = [row["likeness.score"] is not None for row in rows]
-    reached = {
-        goal.name: [goal.reached(row) if found else None for row, found in zip(rows, compared, strict=True)]
-        for goal in GOALS
-    }
-    for goal in GOALS:
-        shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, reached[goal.name], strict=True))
-        cells = (mark(text) if each else text for text, each in zip(shown, reached[goal.name], strict=True))
+    reached = [reached_goals(row) for row in rows]
+    for goal, of_goal in zip(GOALS, zip(*reached, strict=True), strict=True):
+        shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, of_goal, strict=True))
+        cells = (mark(text) if each else text for text, each in zip(shown, of_goal, strict=True))
         yield [goal.name, goal.target(rows[0]).text, *cells]
-    yield [
-        "score [%]",
-        "",
-        *(f"{100.0 * row['likeness.score']:.0f}" if found else "-" for row, found in zip(rows, compared, strict=True)),
-    ]
-    by_run = ([each[run] for each in reached.values()] for run in range(len(rows)))
-    yield [
-        "goals reached",
-        "",
-        *(f"{of_run.count(True)} of {len(GOALS) - of_run.count(None)}" for of_run in by_run),
-    ]
+    yield ["score [%]", "", *map(score_text, rows)]
+    yield ["goals reached", "", *map(goals_text, reached)]
+
+
+def reached_goals(row: Row) -> list[bool | None]:
+    """Whether a row reaches each of GOALS; None where it does not count, or where the walk cannot be compared."""
+    return [None if row["likeness.score"] is None else goal.reached(row) for goal in GOALS]
+
+
+def goals_text(reached: Sequence[bool | None]) -> str:
+    """Number of goals reached, of those that count."""
+    return f"{reached.count(True)} of {len(reached) - reached.count(None)}"
+
+
+def score_text(row: Row) -> str:
+    """Score of a row [%]."""
+    return "-" if row["likeness.score"] is None else f"{100.0 * row['likeness.score']:.0f}"
 
 
 def robustness() -> Iterator[tuple[str, str, str]]:

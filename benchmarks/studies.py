@@ -6,6 +6,7 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 
 import likeness as human_likeness
@@ -52,6 +53,7 @@ KEPT_OF = {
         "peak_torque_N_m.RightLegFemurMotion",
     ),
     human_likeness.STUDY: human_likeness.COLUMNS,
+    "likeness_bodies": human_likeness.COLUMNS,
 }
 """Further columns of single studies."""
 
@@ -285,6 +287,22 @@ def likeness() -> str:
     return study_section(human_likeness.STUDY, section)
 
 
+def likeness_bodies() -> str:
+    """Goals of the walk without a style, and its score, a line for each body."""
+    speeds = load_study(human_likeness.STUDY).factors[FORWARD].levels()
+
+    def cell(row: Row, speed: float) -> str:
+        reached = human_likeness.reached_goals({**row, human_likeness.GAIT: "default", FORWARD: speed})
+        return f"{human_likeness.goals_text(reached)}; {human_likeness.score_text(row)} %"
+
+    def lines(rows: list[Row]) -> Iterator[list[str]]:
+        for body, walks in groupby(rows, key=itemgetter("body")):
+            yield [body, *map(cell, walks, speeds)]
+
+    headings = ["body", *(f"{speed:g} m/s" for speed in speeds)]
+    return study_section("likeness_bodies", lambda rows: table(headings, lines(rows)))
+
+
 def study_table(name: str, headings: Sequence[str], line: Callable[[Row], list[str]]) -> str:
     """Table of the rows of a study, a line for each."""
     return study_section(name, lambda rows: table(headings, map(line, rows)))
@@ -367,7 +385,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
-    "likeness.md": (likeness, normative_seeds),
+    "likeness.md": (likeness, likeness_bodies, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }

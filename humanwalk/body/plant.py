@@ -39,16 +39,17 @@ def kinematics_plant(subject: Subject) -> MultibodyPlant:
     It is the walker's model of its body: it has the impairments, devices and loads that are known. Its states are those
     of every plant of the subject.
     """
-    return _plant_of(subject.known_skeleton)
+    return skeleton_plant(subject.known_skeleton)
 
 
 def body_plant(subject: Subject) -> MultibodyPlant:
     """Return a finalized plant of the subject alone, without geometry, with everything that its model may lack."""
-    return _plant_of(subject.skeleton)
+    return skeleton_plant(subject.skeleton)
 
 
 @cache
-def _plant_of(skeleton: Skeleton) -> MultibodyPlant:
+def skeleton_plant(skeleton: Skeleton) -> MultibodyPlant:
+    """Return a finalized plant of a skeleton alone, without geometry."""
     plant = MultibodyPlant(time_step=0.0)
     parser = Parser(plant)
     parser.SetStrictParsing()

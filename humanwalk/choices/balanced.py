@@ -23,6 +23,7 @@ from humanwalk.choices.world import World
 from humanwalk.control.felt_load import LoadFeeling
 from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
+from humanwalk.motion.walking_posture import height_ratio
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, choice, quantity, tag_of
 from humanwalk.systems.gait_planner import GaitPlanner
@@ -131,11 +132,13 @@ class BalancedController:
         return first.time + time * self.planner.timing.weight_shift + ramp + time * SETTLING
 
     def fitted(self, subject: Subject) -> Self:
-        """The controller with planner, program, style and gains in the units of a subject's body."""
+        """The controller in the units of a subject's body, with the height in which its proportions walk."""
         scale = subject.scale
+        planner = scaled(self.planner, scale)
+        height = replace(planner.height, walking=height_ratio(subject) * planner.height.walking)
         return replace(
             self,
-            planner=scaled(self.planner, scale),
+            planner=replace(planner, height=height),
             whole_body=scaled(self.whole_body, scale),
             gains=scaled(self.gains, scale),
             style=scaled(self.style, scale),

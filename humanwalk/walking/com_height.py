@@ -15,7 +15,8 @@ class ComHeight:
     """Height of the center of mass."""
 
     walking: float = quantity(1.006, "", 0.8, 1.05)
-    """Height at the top of the arcs in walking, relative to the height with straight legs."""
+    """Height at the top of the arcs in walking, relative to the height with straight legs, of the default man. That of
+    other bodies follows from their proportions (`motion.walking_posture`)."""
 
     standing: float = quantity(0.985, "", 0.8, 1.0)
     """The same in quiet standing."""

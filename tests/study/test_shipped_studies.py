@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import replace
+from itertools import batched
 from pathlib import Path
 from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
+from humanwalk.body.subject import Subject
 from humanwalk.cli.main import app
 from humanwalk.scenario import load_scenario
 from humanwalk.study.design import Rows
@@ -41,6 +43,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("thesis_step_height", 9),
         ("actuations", 3),
         ("likeness", 12),
+        ("likeness_bodies", 27),
         ("normative_seeds", 20),
         ("subjects_adults", 100),
         ("subjects_children", 40),
@@ -102,6 +105,16 @@ def test_subjects_walk_at_one_dimensionless_speed(name: str) -> None:
         leg, speed = scenario.subject.body.hip_height, scenario.controller.commanded_speed
         assert speed == pytest.approx(1.2 * math.sqrt(leg / 0.93), abs=6e-4)
     assert {scenario.subject.sex for scenario in scenarios} == {"female", "male"}
+
+
+def test_bodies_are_compared_at_the_dimensionless_speeds_of_the_default_man() -> None:
+    study, man = load_study("likeness_bodies"), Subject().skeleton.hip_height
+    speeds = load_study("likeness").factors["controller.balanced.command.points.0.forward"].levels()
+    for scenarios in batched(map(study.scenario_at, study.points), 3):
+        (subject,) = {scenario.subject for scenario in scenarios}
+        ratio = math.sqrt(subject.skeleton.hip_height / man)
+        commanded = [scenario.controller.commanded_speed for scenario in scenarios]
+        assert commanded == pytest.approx([ratio * speed for speed in speeds], abs=6e-4)
 
 
 def test_pushes_leave_time_to_fall() -> None:
