@@ -74,8 +74,8 @@ class Goal:
         return self.with_style if self.with_style and row[GAIT] == STYLED else self.without
 
     def reached(self, row: Row) -> bool | None:
-        """Whether a row reaches the goal; None where it does not count."""
-        if self.speeds and row[FORWARD] not in self.speeds:
+        """Whether a row reaches the goal; None where it does not count, or where the walk cannot be compared."""
+        if row["likeness.score"] is None or (self.speeds and row[FORWARD] not in self.speeds):
             return None
         limits = self.target(row).limits(row)
         return all(low <= value <= high for value, (low, high) in zip(self.values(row), limits, strict=True))
@@ -83,6 +83,13 @@ class Goal:
     def shown(self, row: Row) -> str:
         """The values of a row as text."""
         return " ".join(format(value, self.form) for value in self.values(row))
+
+    def cell(self, row: Row, mark: Callable[[str], str]) -> str:
+        """The cell of a row in the table; `mark` marks values that reach the goal."""
+        reached = self.reached(row)
+        if reached is None:
+            return "-"
+        return mark(self.shown(row)) if reached else self.shown(row)
 
 
 def _values(*columns: str, scale: float = 1.0) -> Callable[[Row], list[float]]:
@@ -191,28 +198,22 @@ def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]
 
     A run that fell, or whose strides cannot be compared, has no values.
     """
-    reached = [reached_goals(row) for row in rows]
-    for goal, of_goal in zip(GOALS, zip(*reached, strict=True), strict=True):
-        shown = ("-" if each is None else goal.shown(row) for row, each in zip(rows, of_goal, strict=True))
-        cells = (mark(text) if each else text for text, each in zip(shown, of_goal, strict=True))
-        yield [goal.name, goal.target(rows[0]).text, *cells]
+    for goal in GOALS:
+        yield [goal.name, goal.target(rows[0]).text, *(goal.cell(row, mark) for row in rows)]
     yield ["score [%]", "", *map(score_text, rows)]
-    yield ["goals reached", "", *map(goals_text, reached)]
+    yield ["goals reached", "", *map(goals_text, rows)]
 
 
-def reached_goals(row: Row) -> list[bool | None]:
-    """Whether a row reaches each of GOALS; None where it does not count, or where the walk cannot be compared."""
-    return [None if row["likeness.score"] is None else goal.reached(row) for goal in GOALS]
-
-
-def goals_text(reached: Sequence[bool | None]) -> str:
-    """Number of goals reached, of those that count."""
-    return f"{reached.count(True)} of {len(reached) - reached.count(None)}"
+def goals_text(row: Row) -> str:
+    """Number of goals that a row reaches, and of those that count."""
+    reached = [goal.reached(row) for goal in GOALS]
+    return f"{reached.count(True)} of {len(GOALS) - reached.count(None)}"
 
 
 def score_text(row: Row) -> str:
     """Score of a row [%]."""
-    return "-" if row["likeness.score"] is None else f"{100.0 * row['likeness.score']:.0f}"
+    score = row["likeness.score"]
+    return "-" if score is None else f"{100.0 * score:.0f}"
 
 
 def robustness() -> Iterator[tuple[str, str, str]]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import likeness as human_likeness
 import numpy as np
 from actuation_figure import tracking_by_group
-from likeness import Row
+from likeness import CONTACT, GAIT, Row
 from matplotlib.figure import Figure
 
 from humanwalk.files import make_folder
@@ -291,13 +291,15 @@ def likeness_bodies() -> str:
     """Goals of the walk without a style, and its score, a line for each body."""
     speeds = load_study(human_likeness.STUDY).factors[FORWARD].levels()
 
-    def cell(row: Row, speed: float) -> str:
-        reached = human_likeness.reached_goals({**row, human_likeness.GAIT: "default", FORWARD: speed})
-        return f"{human_likeness.goals_text(reached)}; {human_likeness.score_text(row)} %"
+    def line(body: str, walks: Iterable[Row]) -> list[str]:
+        compared = ({**row, GAIT: "default", FORWARD: speed} for row, speed in zip(walks, speeds, strict=True))
+        return [body, *(f"{human_likeness.goals_text(row)}; {human_likeness.score_text(row)} %" for row in compared)]
 
     def lines(rows: list[Row]) -> Iterator[list[str]]:
+        of_the_man = study_results(human_likeness.STUDY).table.to_pylist()
+        yield line("the default man", (row for row in of_the_man if (row[GAIT], row[CONTACT]) == ("default", "point")))
         for body, walks in groupby(rows, key=itemgetter("body")):
-            yield [body, *map(cell, walks, speeds)]
+            yield line(body, walks)
 
     headings = ["body", *(f"{speed:g} m/s" for speed in speeds)]
     return study_section("likeness_bodies", lambda rows: table(headings, lines(rows)))
