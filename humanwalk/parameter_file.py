@@ -240,7 +240,7 @@ def _build(kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
     if origin is tuple:
         of = typing.get_args(kind)[0]
         fields = dataclasses.fields(of) if dataclasses.is_dataclass(of) else ()
-        allowed = f"groups of {', '.join(field.name for field in fields)}" if fields else "values"
+        allowed = f"groups with {', '.join(field.name for field in fields)}" if fields else "values"
         return tuple(_build(of, entry, at) for entry, at in _entries(value, place, allowed))
     if origin in (dict, Mapping):
         if not isinstance(value, dict):

@@ -193,16 +193,19 @@ def test_huge_whole_number_is_refused(key: str, value: str) -> None:
     assert key in refusal("", {key: value})
 
 
+NOT_A_DURATION = "is not a number; allowed: 0.001 to 3600 s; write a number"
+
+
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [
-        ("duration", "true", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "fast", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "15 s", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "2017-01-01", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "null", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "[1]", "is not a number; allowed: 0.001 to 3600 s; write a number"),
-        ("duration", "{a: 1}", "is not a number; allowed: 0.001 to 3600 s; write a number"),
+        ("duration", "true", NOT_A_DURATION),
+        ("duration", "fast", NOT_A_DURATION),
+        ("duration", "15 s", NOT_A_DURATION),
+        ("duration", "2017-01-01", NOT_A_DURATION),
+        ("duration", "null", NOT_A_DURATION),
+        ("duration", "[1]", NOT_A_DURATION),
+        ("duration", "{a: 1}", NOT_A_DURATION),
         ("seed", "1.5", "is not a whole number; allowed: 0 to "),
         ("seed", "true", "is not a whole number; allowed: 0 to "),
         ("seed", "-1", "allowed: 0 to"),
@@ -210,7 +213,7 @@ def test_huge_whole_number_is_refused(key: str, value: str) -> None:
         ("controller.thesis.balance.support.enabled", "'true'", "true or false"),
         ("description", "3", "text"),
         ("controller.thesis.gait", "[1]", "allowed: ramp, path, first_swing, footholds, clearance, arms"),
-        ("duration", "1:30", "is not a number; allowed: 0.001 to 3600 s; write a number"),
+        ("duration", "1:30", NOT_A_DURATION),
         ("controller.thesis.balance.support.enabled", "no", "true or false"),
         ("controller.thesis.gait.path", "0.3", "allowed: step_length"),
         ("controller.thesis.gait.path", "null", "allowed: step_length"),

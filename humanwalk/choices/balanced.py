@@ -132,7 +132,7 @@ class BalancedController:
         return first.time + time * self.planner.timing.weight_shift + ramp + time * SETTLING
 
     def fitted(self, subject: Subject) -> Self:
-        """The controller in the units of a subject's body, with the height in which its proportions walk."""
+        """The controller in the units of a subject's body, with the walking height of its proportions."""
         scale = subject.scale
         planner = scaled(self.planner, scale)
         height = replace(planner.height, walking=height_ratio(subject) * planner.height.walking)
