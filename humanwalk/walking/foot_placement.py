@@ -87,7 +87,10 @@ class StepPlacement:
         return clip(x + math.copysign(0.5 * missing, x + self.abreast), -farthest, farthest)
 
     def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
-        """Waypoint beside the stance foot for a swinging foot whose straight way would hit it.
+        """Waypoint for a swinging foot whose straight way would hit the stance foot.
+
+        It is `abreast` before the stance foot, where the legs begin to be side by side, but at least `abreast` ahead of
+        the foot, so that the foot has a way to move aside; not beyond the stance foot.
 
         Args:
             foot: Position of the swinging foot.
@@ -99,10 +102,13 @@ class StepPlacement:
         """
         if foot.real * foothold.real >= 0.0:
             return None
-        fraction = foot.real / (foot.real - foothold.real)
-        beside = foot + fraction * (foothold - foot)
+        x = math.copysign(clip(abs(foot.real) - self.abreast, 0.0, self.abreast), foot.real)
+        fraction = (foot.real - x) / (foot.real - foothold.real)
+        there = foot + fraction * (foothold - foot)
         outward = OUTWARD[stance]
-        return None if outward * beside.imag >= self.min_width else (1j * outward * self.passing_distance, fraction)
+        if outward * there.imag >= self.min_width:
+            return None
+        return complex(x, outward * self.passing_distance), fraction
 
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].

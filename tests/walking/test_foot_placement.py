@@ -114,13 +114,14 @@ def test_only_a_foot_whose_straight_way_would_hit_the_stance_foot_has_a_waypoint
 ) -> None:
     outward = OUTWARD[stance]
     waypoint = PLACEMENT.passing_waypoint(complex(x, outward * width), complex(goal, outward * goal_width), stance)
-    beside = np.interp(0.0, *np.transpose(sorted([(x, width), (goal, goal_width)])))
-    assume(abs(beside - PLACEMENT.min_width) > 1e-9)
-    assert (waypoint is not None) == (x * goal < 0.0 and beside < PLACEMENT.min_width)
+    side_by_side = math.copysign(np.clip(abs(x) - PLACEMENT.abreast, 0.0, PLACEMENT.abreast), x)
+    there = np.interp(side_by_side, *np.transpose(sorted([(x, width), (goal, goal_width)])))
+    assume(abs(there - PLACEMENT.min_width) > 1e-9)
+    assert (waypoint is not None) == (x * goal < 0.0 and there < PLACEMENT.min_width)
     if waypoint is not None:
         point, fraction = waypoint
-        assert point == complex(0.0, outward * PLACEMENT.passing_distance)
-        assert x + fraction * (goal - x) == pytest.approx(0.0, abs=1e-9)
+        assert point == complex(side_by_side, outward * PLACEMENT.passing_distance)
+        assert x + fraction * (goal - x) == pytest.approx(side_by_side, abs=1e-9)
 
 
 @given(st.floats(-1.5, 1.5), st.floats(-0.5, 0.5), st.floats(-0.5, 0.8))
