@@ -55,7 +55,7 @@ class StepPlacement:
     """Distance ahead of or behind the stance foot up to which the legs are side by side."""
 
     min_own_side_offset: float = quantity(0.05, "m", 0.0, 0.3)
-    """A foot that stands less than this on its own side of the stance foot cannot step across it."""
+    """A foot less than this on its own side of the stance foot comes from across, and cannot step across."""
 
     filter_time: float = quantity(0.02, "s", 0.0, 0.5)
     """Time constant of the low-pass filter of the foothold."""
@@ -86,13 +86,16 @@ class StepPlacement:
         missing = max(self.min_step_width(x) - width, 0.0)
         return clip(x + math.copysign(0.5 * missing, x + self.abreast), -farthest, farthest)
 
-    def passing_waypoint(self, foot: complex, foothold: complex, stance: Side) -> tuple[complex, float] | None:
+    def passing_waypoint(
+        self, start: complex, foot: complex, foothold: complex, stance: Side
+    ) -> tuple[complex, float] | None:
         """Waypoint for a swinging foot whose straight way would hit the stance foot.
 
-        It is `abreast` before the stance foot, where the legs begin to be side by side, but at least `abreast` ahead of
-        the foot, so that the foot has a way to move aside; not beyond the stance foot.
+        It is beside the stance foot. For a foot that comes from across it is `abreast` before that, where the legs
+        begin to be side by side, but at least `abreast` ahead of the foot, so that it has a way to move aside.
 
         Args:
+            start: Where the foot left the ground.
             foot: Position of the swinging foot.
             foothold: Where it goes.
             stance: The stance foot.
@@ -102,10 +105,11 @@ class StepPlacement:
         """
         if foot.real * foothold.real >= 0.0:
             return None
-        x = math.copysign(clip(abs(foot.real) - self.abreast, 0.0, self.abreast), foot.real)
+        outward, x = OUTWARD[stance], 0.0
+        if outward * start.imag < self.min_own_side_offset:
+            x = math.copysign(clip(abs(foot.real) - self.abreast, 0.0, self.abreast), foot.real)
         fraction = (foot.real - x) / (foot.real - foothold.real)
         there = foot + fraction * (foothold - foot)
-        outward = OUTWARD[stance]
         if outward * there.imag >= self.min_width:
             return None
         return complex(x, outward * self.passing_distance), fraction

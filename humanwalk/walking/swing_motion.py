@@ -102,9 +102,8 @@ def _moved(
     elif added.arrive < 1.0:
         landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining, parameters.clearance.hold)
     motion = swing.motion.towards(landing, time, period, jerk_limit)
-    waypoint = parameters.placement.passing_waypoint(
-        state.local(swing.motion.position), state.local(foothold), state.stance
-    )
+    start, foot, goal = map(state.local, (swing.start, swing.motion.position, foothold))
+    waypoint = parameters.placement.passing_waypoint(start, foot, goal, state.stance)
     if waypoint is None:
         return motion
     point, fraction = waypoint
