@@ -105,14 +105,14 @@ class StepPlacement:
         """
         if foot.real * foothold.real >= 0.0:
             return None
-        outward, x = OUTWARD[stance], 0.0
+        outward, length = OUTWARD[stance], foot.real - foothold.real
+        beside = foot + foot.real / length * (foothold - foot)
+        if outward * beside.imag >= self.min_width:
+            return None
+        x = 0.0
         if outward * start.imag < self.min_own_side_offset:
             x = math.copysign(clip(abs(foot.real) - self.abreast, 0.0, self.abreast), foot.real)
-        fraction = (foot.real - x) / (foot.real - foothold.real)
-        there = foot + fraction * (foothold - foot)
-        if outward * there.imag >= self.min_width:
-            return None
-        return complex(x, outward * self.passing_distance), fraction
+        return complex(x, outward * self.passing_distance), (foot.real - x) / length
 
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].

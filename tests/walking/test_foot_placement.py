@@ -117,12 +117,12 @@ def test_only_a_foot_whose_straight_way_would_hit_the_stance_foot_has_a_waypoint
     outward = OUTWARD[stance]
     way = (complex(-0.6, outward * start), complex(x, outward * width), complex(goal, outward * goal_width))
     waypoint = PLACEMENT.passing_waypoint(*way, stance)
+    beside = np.interp(0.0, *np.transpose(sorted([(x, width), (goal, goal_width)])))
+    assume(abs(beside - PLACEMENT.min_width) > 1e-9)
+    assert (waypoint is not None) == (x * goal < 0.0 and beside < PLACEMENT.min_width)
     comes_from_across = outward * way[0].imag < PLACEMENT.min_own_side_offset
     before = np.clip(abs(x) - PLACEMENT.abreast, 0.0, PLACEMENT.abreast) if comes_from_across else 0.0
     passing = math.copysign(before, x)
-    there = np.interp(passing, *np.transpose(sorted([(x, width), (goal, goal_width)])))
-    assume(abs(there - PLACEMENT.min_width) > 1e-9)
-    assert (waypoint is not None) == (x * goal < 0.0 and there < PLACEMENT.min_width)
     if waypoint is not None:
         point, fraction = waypoint
         assert point == complex(passing, outward * PLACEMENT.passing_distance)
