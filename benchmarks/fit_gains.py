@@ -174,7 +174,7 @@ def miss(goal: Goal, values: Array, row: Row) -> float:
 
 def goals_reached(walks: Sequence[Walked]) -> int:
     """Number of goals that are reached."""
-    return sum(goal.reached(row) is True for row, _ in walks for goal in GOALS)
+    return sum(goal.reached(row) for row, _ in walks for goal in GOALS)
 
 
 def told(walks: Sequence[Walked] | None) -> str:
@@ -188,7 +188,7 @@ def merit(walks: Sequence[Walked]) -> float:
         max(miss(goal, np.array(goal.values(row)), row), 0.0)
         for row, _ in walks
         for goal in GOALS
-        if goal.name in UNITS and goal.reached(row) is not None
+        if goal.name in UNITS and goal.counts(row)
     )
     score = np.mean([100.0 * row["likeness.score"] for row, _ in walks])
     return float(goals_reached(walks) - DISTANCE_COST * distance + SCORE_GAIN * score)
@@ -287,7 +287,7 @@ class Case(NamedTuple):
         share_changes = _share_changes(more)
         missed = 0.0
         for goal in GOALS:
-            if goal.name in UNITS and goal.reached(self.row) is not None:
+            if goal.name in UNITS and goal.counts(self.row):
                 value, slopes = self.values[goal.name]
                 changed = value + share_changes.get(goal.name, steps @ slopes)
                 distance = miss(goal, changed, self.row)

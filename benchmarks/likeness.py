@@ -28,12 +28,18 @@ STUDY = "likeness"
 RESULTS = Path(__file__).parent / "results"
 CONTACT, FORWARD = "contact", "controller.balanced.command.points.0.forward"
 GAIT, STYLED = "gait", "normative"
+SCORE = "likeness.score"
 
 COLUMNS = tuple(f"likeness.{name}" for name in likeness_columns())
 """Columns of the study's table that the goals need, besides the usual ones."""
 
 Row = Mapping[str, Any]
 Limits = tuple[float, float]
+
+
+def is_compared(row: Row) -> bool:
+    """Whether the walk of a row can be compared with people's; one that fell cannot."""
+    return row[SCORE] is not None
 
 
 @dataclass(frozen=True)
@@ -73,10 +79,14 @@ class Goal:
         """The target of a row."""
         return self.with_style if self.with_style and row[GAIT] == STYLED else self.without
 
-    def reached(self, row: Row) -> bool | None:
-        """Whether a row reaches the goal; None where it does not count, or where the walk cannot be compared."""
-        if row["likeness.score"] is None or (self.speeds and row[FORWARD] not in self.speeds):
-            return None
+    def counts(self, row: Row) -> bool:
+        """Whether the goal counts for a row: at its speed, if the walk can be compared."""
+        return is_compared(row) and (not self.speeds or row[FORWARD] in self.speeds)
+
+    def reached(self, row: Row) -> bool:
+        """Whether the goal counts for a row, and the row reaches it."""
+        if not self.counts(row):
+            return False
         limits = self.target(row).limits(row)
         return all(low <= value <= high for value, (low, high) in zip(self.values(row), limits, strict=True))
 
@@ -86,10 +96,9 @@ class Goal:
 
     def cell(self, row: Row, mark: Callable[[str], str]) -> str:
         """The cell of a row in the table; `mark` marks values that reach the goal."""
-        reached = self.reached(row)
-        if reached is None:
+        if not self.counts(row):
             return "-"
-        return mark(self.shown(row)) if reached else self.shown(row)
+        return mark(self.shown(row)) if self.reached(row) else self.shown(row)
 
 
 def _values(*columns: str, scale: float = 1.0) -> Callable[[Row], list[float]]:
@@ -206,14 +215,12 @@ def lines(rows: Sequence[Row], mark: Callable[[str], str]) -> Iterator[list[str]
 
 def goals_text(row: Row) -> str:
     """Number of goals that a row reaches, and of those that count."""
-    reached = [goal.reached(row) for goal in GOALS]
-    return f"{reached.count(True)} of {len(GOALS) - reached.count(None)}"
+    return f"{sum(goal.reached(row) for goal in GOALS)} of {sum(goal.counts(row) for goal in GOALS)}"
 
 
 def score_text(row: Row) -> str:
     """Score of a row [%]."""
-    score = row["likeness.score"]
-    return "-" if score is None else f"{100.0 * score:.0f}"
+    return f"{100.0 * row[SCORE]:.0f}" if is_compared(row) else "-"
 
 
 def robustness() -> Iterator[tuple[str, str, str]]:
