@@ -55,7 +55,7 @@ class StepPlacement:
     """Distance ahead of or behind the stance foot up to which the legs are side by side."""
 
     min_own_side_offset: float = quantity(0.05, "m", 0.0, 0.3)
-    """A foot less than this on its own side of the stance foot comes from across, and cannot step across."""
+    """A foot that stands less than this on its own side of the stance foot is across it, and cannot step across."""
 
     filter_time: float = quantity(0.02, "s", 0.0, 0.5)
     """Time constant of the low-pass filter of the foothold."""
@@ -86,13 +86,17 @@ class StepPlacement:
         missing = max(self.min_step_width(x) - width, 0.0)
         return clip(x + math.copysign(0.5 * missing, x + self.abreast), -farthest, farthest)
 
+    def is_across(self, foot: complex, stance: Side) -> bool:
+        """Whether a foot stands across the stance foot, or nearly so."""
+        return OUTWARD[stance] * foot.imag < self.min_own_side_offset
+
     def passing_waypoint(
         self, start: complex, foot: complex, foothold: complex, stance: Side
     ) -> tuple[complex, float] | None:
         """Waypoint for a swinging foot whose straight way would hit the stance foot.
 
-        It is beside the stance foot. For a foot that comes from across it is `abreast` before that, where the legs
-        begin to be side by side, but at least `abreast` ahead of the foot, so that it has a way to move aside.
+        It is beside the stance foot. For a foot that comes from across it is up to `abreast` before that, where the
+        toes reach the heel of the stance foot, but still `abreast` ahead of the foot, which needs room to move aside.
 
         Args:
             start: Where the foot left the ground.
@@ -109,9 +113,8 @@ class StepPlacement:
         beside = foot + foot.real / length * (foothold - foot)
         if outward * beside.imag >= self.min_width:
             return None
-        x = 0.0
-        if outward * start.imag < self.min_own_side_offset:
-            x = math.copysign(clip(abs(foot.real) - self.abreast, 0.0, self.abreast), foot.real)
+        before = clip(abs(foot.real) - self.abreast, 0.0, self.abreast) if self.is_across(start, stance) else 0.0
+        x = math.copysign(before, foot.real)
         return complex(x, outward * self.passing_distance), (foot.real - x) / length
 
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
@@ -124,7 +127,7 @@ class StepPlacement:
         """
         outward = OUTWARD[stance]
         width = outward * desired.imag
-        crossing = -width if outward * foot.imag >= self.min_own_side_offset else 0.0
+        crossing = 0.0 if self.is_across(foot, stance) else -width
         return max(width - self.speedup_width, crossing, 0.0)
 
     def within_reach(self, desired: complex, stance: Side, foot: complex) -> tuple[complex, float]:

@@ -120,7 +120,7 @@ def test_only_a_foot_whose_straight_way_would_hit_the_stance_foot_has_a_waypoint
     beside = np.interp(0.0, *np.transpose(sorted([(x, width), (goal, goal_width)])))
     assume(abs(beside - PLACEMENT.min_width) > 1e-9)
     assert (waypoint is not None) == (x * goal < 0.0 and beside < PLACEMENT.min_width)
-    comes_from_across = outward * way[0].imag < PLACEMENT.min_own_side_offset
+    comes_from_across = start < PLACEMENT.min_own_side_offset
     before = np.clip(abs(x) - PLACEMENT.abreast, 0.0, PLACEMENT.abreast) if comes_from_across else 0.0
     passing = math.copysign(before, x)
     if waypoint is not None:

@@ -1,11 +1,16 @@
-"""The swinging foot clears what it will step over."""
+"""The swinging foot clears what it will step over, and the other leg."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.course import Course
+from humanwalk.terrain.plane import Plane
 from humanwalk.terrain.steps import Obstacle
+from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
+from humanwalk.walking.motions import PlanarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -21,6 +26,8 @@ FOOTHOLDS = FootholdPlanner(
 )
 BEAM = Course((Obstacle(height=0.15, thickness=0.1, length=0.7),), run_up=0.0)
 """The beam is 0.3 to 0.4 m ahead."""
+FOOT_LENGTH, FOOT_WIDTH = 0.21, 0.07
+"""Of the capsules with which the feet touch each other [m], `contact/leg_contact.py`."""
 BEYOND, AT_THE_BEAM = 0.7 - 0.09j, 0.47 - 0.09j
 
 
@@ -28,9 +35,9 @@ def foot(position: complex) -> FootState:
     return FootState(position, 0j, height=0.07, height_rate=0.0, yaw=0.0, pitch=0.0, pitch_rate=0.0, force=350.0)
 
 
-def swing_over_the_beam() -> tuple[PlannerState, Swing]:
+def first_swing(ground: Ground) -> tuple[PlannerState, Swing]:
     body = BodyState(0j, 0j, 0.97, right=foot(-0.09j), left=foot(0.09j))
-    phases = PhaseTransitions(PARAMETERS, 0.07, "Right", BEAM, FOOTHOLDS)
+    phases = PhaseTransitions(PARAMETERS, 0.07, "Right", ground, FOOTHOLDS)
     state = phases.start(body, 0.0)._replace(phase=Phase.WEIGHT_SHIFT, elapsed=PARAMETERS.timing.weight_shift)
     state = phases.advance(state, body, WALK, dcm=body.com)
     assert state.swing is not None
@@ -39,7 +46,7 @@ def swing_over_the_beam() -> tuple[PlannerState, Swing]:
 
 def swung(*goals: tuple[complex, complex]) -> Swing:
     """The swing after control periods in which balance desires a foothold, and will desire another at touchdown."""
-    state, swing = swing_over_the_beam()
+    state, swing = first_swing(BEAM)
     for desired, expected in goals:
         goal = SwingGoal(desired, expected, state.timing.step - state.elapsed)
         swing = advanced_swing(state, swing, goal, WALK, PARAMETERS, FOOTHOLDS, PERIOD)
@@ -58,3 +65,18 @@ def test_a_foothold_that_is_desired_for_a_moment_does_not_change_how_the_foot_cl
 def test_a_foot_that_will_land_at_the_beam_sinks_last() -> None:
     assert swung((AT_THE_BEAM, AT_THE_BEAM)).clearance.arrive < 1.0
     assert swung((BEYOND, BEYOND)).clearance.arrive == pytest.approx(1.0)
+
+
+@given(st.floats(-0.7, -0.5), st.floats(0.05, 0.2), st.floats(0.2, 0.5), st.floats(1.0, 2.0))
+def test_a_foot_from_across_is_aside_before_its_toes_reach_the_heel_of_the_stance_foot(
+    behind: float, across: float, ahead: float, phase_rate: float
+) -> None:
+    state, swing = first_swing(Plane())
+    start, goal = (state.stance_foot.position + place for place in (complex(behind, across), complex(ahead, -0.09)))
+    swing = swing._replace(start=start, motion=PlanarMotion(start))
+    while (remaining := (state.timing.step - state.elapsed) / phase_rate) > PERIOD:
+        swing = advanced_swing(state, swing, SwingGoal(goal, goal, remaining), WALK, PARAMETERS, FOOTHOLDS, PERIOD)
+        state = state._replace(elapsed=state.elapsed + phase_rate * PERIOD, swing=swing)
+        place = state.local(swing.motion.position)
+        if abs(place.real) < FOOT_LENGTH:
+            assert -place.imag > FOOT_WIDTH
