@@ -18,7 +18,7 @@ from humanwalk.measures.signals import matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
-from humanwalk.scenario import parse_scenario
+from humanwalk.scenario import load_scenario, parse_scenario
 from humanwalk.sides import SIDES, Side
 
 pytestmark = pytest.mark.slow
@@ -265,3 +265,9 @@ def test_a_heavy_hand_hangs_still_and_the_walker_is_as_fast_as_without(load: str
     right, left = (np.ptp(signals[f"{arm.shoulder_flexion}.angle_rad"][steady]) for arm in ARMS.values())
     assert left < 0.5 * right if "Left" in load else right < 0.5 * left
     assert signals["felt_load.mass_kg"][steady].mean() == pytest.approx(8.0 if "known" in load else 0.0, rel=0.1)
+
+
+def test_a_walker_with_a_passive_ankle_walks_from_a_disturbed_start() -> None:
+    """The force on a foot that its spring turns is not limited; with the limit this walk ended at 7.8 s."""
+    fields = {"start.joint_noise": 0.01, "seed": 6, "duration": 9.0}
+    assert simulate(load_scenario("ankle_prosthesis", fields)).end == "completed"

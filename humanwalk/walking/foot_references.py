@@ -98,16 +98,26 @@ def stance_foot(
     return rockers.over_ball(since, timing.double_support, 1.0, state.heading, R_WS, found)
 
 
-def foot_behind(state: PlannerState, command: Command, parameters: StepPlannerParameters) -> FootReference:
+def foot_behind(
+    state: PlannerState, command: Command, parameters: StepPlannerParameters, is_passive: bool = False
+) -> FootReference:
     """Reference of the foot that leaves the ground at the end of double support.
 
-    Its force is limited in a step on one face only: on boxes of ±5 cm 2 of 40 walks fell with the limit.
+    Its force is limited in a step on one face only: on boxes of ±5 cm 2 of 40 walks fell with the limit. The force on a
+    foot without muscles at the ankle is that of its spring: with the limit 4 of 10 walks with a prosthesis fell.
+
+    Args:
+        state: State of the planner.
+        command: The command.
+        parameters: Parameters of the planner.
+        is_passive: Whether the foot has no muscles at the ankle.
     """
     timing, rockers = state.timing, parameters.rockers
     load, R_WS = max(1.0 - state.elapsed / timing.double_support, 0.0), state.old_foot.R_WS
     raised = state.preview.raised[0]
     found = rollover(state, state.old_foot, state.stance_foot, raised, command, parameters)
-    force = rockers.unloading_force if state.old_foot.face.covers_as(state.stance_foot.face) else math.inf
+    is_limited = state.old_foot.face.covers_as(state.stance_foot.face) and not is_passive
+    force = rockers.unloading_force if is_limited else math.inf
     if rockers.heel_rises(found.speed):
         # After an early touchdown of the other foot, a heel-off that has begun goes on without a jump.
         since = state.elapsed + max(found.lead - state.early, 0.0)

@@ -174,7 +174,7 @@ class StepPlanner:
             is_loaded = body.foot(state.stance).force >= timing.loaded_force
             phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit) if is_loaded else 1.0
             foothold = state.old_foot
-            other_foot = foot_behind(state, command, p)
+            other_foot = foot_behind(state, command, p, state.swing_side in self._passive_ankles)
         else:
             reachable, excess = placement.within_reach(desired, state.stance, foot)
             phase_rate = timing.phase_rate(excess, timing.phase_rate_limit)

@@ -104,6 +104,7 @@ def test_the_force_on_the_foot_behind_is_limited_in_a_step_on_one_face(command: 
     box = landed._replace(left=STANCE._replace(face=LEVEL._replace(lower=(0.3, -10.0))))
     assert foot_behind(landed, command, PARAMETERS).force == ROCKERS.unloading_force
     assert foot_behind(box, command, PARAMETERS).force == math.inf
+    assert foot_behind(landed, command, PARAMETERS, is_passive=True).force == math.inf
 
 
 @given(st.floats(-1.0, 1.5), st.floats(-1.0, 1.5))

@@ -276,6 +276,18 @@ def test_the_pressure_under_a_passive_foot_is_where_its_spring_puts_it() -> None
     assert (np.diff(footholds) < 0.0).all()
 
 
+def test_the_force_on_an_unloading_foot_is_limited_unless_its_ankle_is_passive() -> None:
+    state, body = next(
+        (state, body)
+        for _, state, _, body in pendulum_walk(planner(), walk_at(1.0), 3.0)
+        if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed > 0.0
+    )
+    for passive_ankles in ((), (state.stance,), (state.swing_side,)):
+        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
+        force = plan.update(state, body, WALK)[1].foot(state.swing_side).force
+        assert (force == math.inf) == (state.swing_side in passive_ankles)
+
+
 def test_a_pendulum_with_angular_momentum_walks_as_commanded_and_its_pressure_rolls_forward() -> None:
     support = replace(PARAMETERS.support, pivot=0.05)
     walk = pendulum_walk(planner(parameters=replace(PARAMETERS, support=support)), walk_at(1.0), 12.0)
