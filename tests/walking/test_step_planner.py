@@ -4,7 +4,7 @@ import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,10 @@ from humanwalk.body.contact import SoleExtent
 from humanwalk.body.limbs import other_side
 from humanwalk.numerics import Array
 from humanwalk.terrain import Course, Plane
+from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Stairs
 from humanwalk.walking.command import Command
+from humanwalk.walking.foot_placement import OUTWARD
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
@@ -274,6 +276,17 @@ def test_the_pressure_under_a_passive_foot_is_where_its_spring_puts_it() -> None
             if force:
                 footholds.append(plans[0].foothold.real)
     assert (np.diff(footholds) < 0.0).all()
+
+
+@pytest.mark.parametrize("time", [3.4, 3.5, 3.6])
+def test_on_boxes_a_foot_is_on_its_way_to_the_box_on_which_it_will_step_across(time: float) -> None:
+    """Behind the stance foot it cannot cross yet, and just before touchdown it cannot change the box any more."""
+    walk = pendulum_walk(planner(Course((Rough(length=30.0),), run_up=0.3)), walk_at(0.8), time + 0.6, (time, 0.4j))
+    pushed = (state for t, state, _, _ in walk if t > time)
+    stance, states = next(groupby(pushed, key=lambda state: state.stance))
+    last = [state for state in states if state.swing is not None][-1]
+    assert last.swing is not None
+    assert OUTWARD[stance] * last.local(last.swing.foothold.position).imag < PARAMETERS.placement.min_own_side_offset
 
 
 def test_the_force_on_an_unloading_foot_is_limited_unless_its_ankle_is_passive() -> None:
