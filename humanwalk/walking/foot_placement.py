@@ -44,6 +44,11 @@ class StepPlacement:
     passing_distance: float = quantity(0.12, "m", 0.0, 0.3)
     """Sideways distance at which a foot that comes from across passes the stance foot."""
 
+    passing_acceleration: float = quantity(80.0, "m/s2", 10.0, 1e4)
+    """Largest sideways acceleration on the way to that distance; the whole-body program follows up to 100 m/s2. Without
+    it a foot reaches 9 m/s, is thrown aside by half a meter, and pushes the body over (docs/balance_trials.md, "What a
+    push teaches")."""
+
     max_com_distance: float = quantity(0.38, "m", 0.1, 1.0)
     """Largest distance of a foothold ahead of or behind the center of mass at touchdown. A foot that lands farther
     ahead brakes the body so much that it falls backward (docs/balance_trials.md, "What a push teaches")."""

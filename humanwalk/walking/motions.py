@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -30,6 +31,11 @@ def blend(start: float, end: float, time: float, duration: float) -> ScalarMotio
     s, slope, curvature = quintic_blend(clip(time / duration, 0.0, 1.0))
     change = end - start
     return ScalarMotion(start + change * s, change * slope / duration, change * curvature / duration**2)
+
+
+def shortest_blend(change: float, max_acceleration: float) -> float:
+    """Duration of the shortest blend by a change within an acceleration; its peak is 10 / sqrt(3) |change| / time^2."""
+    return math.sqrt(10.0 / math.sqrt(3.0) * abs(change) / max_acceleration)
 
 
 class Cubic(NamedTuple):

@@ -6,7 +6,7 @@ Points of the level plane are complex numbers x + iy [m].
 from typing import NamedTuple
 
 from humanwalk.walking.command import Command
-from humanwalk.walking.motions import PlanarMotion
+from humanwalk.walking.motions import PlanarMotion, shortest_blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
@@ -101,11 +101,14 @@ def _moved(
         landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining, parameters.clearance.hold)
     elif added.arrive < 1.0:
         landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining, parameters.clearance.hold)
-    motion = swing.motion.towards(landing, time, period, jerk_limit)
     start, foot, goal = map(state.local, (swing.start, swing.motion.position, foothold))
     waypoint = parameters.placement.passing_waypoint(start, foot, goal, state.stance)
     if waypoint is None:
-        return motion
+        return swing.motion.towards(landing, time, period, jerk_limit)
+    # A foot that needs longer to move aside moves forward later.
     point, fraction = waypoint
-    passing = swing.motion.towards(PlanarMotion(state.world(point)), fraction * remaining, period, jerk_limit)
+    aside = shortest_blend((point - foot).imag, parameters.placement.passing_acceleration)
+    aside = max(aside, fraction * remaining)
+    motion = swing.motion.towards(landing, time + aside - fraction * remaining, period, jerk_limit)
+    passing = swing.motion.towards(PlanarMotion(state.world(point)), aside, period, jerk_limit)
     return motion.with_sideways_of(passing, state.direction)

@@ -1,5 +1,7 @@
 """The swinging foot clears what it will step over, and the other leg."""
 
+from collections.abc import Iterator
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -67,16 +69,27 @@ def test_a_foot_that_will_land_at_the_beam_sinks_last() -> None:
     assert swung((BEYOND, BEYOND)).clearance.arrive == pytest.approx(1.0)
 
 
+def passing(start: complex, velocity: complex, goal: complex, phase_rate: float) -> Iterator[complex]:
+    """Places of a foot that starts across and passes the stance foot, in the frame of the step."""
+    state, swing = first_swing(Plane())
+    start, goal = (state.stance_foot.position + place for place in (start, goal))
+    swing = swing._replace(start=start, motion=PlanarMotion(start, velocity))
+    while (remaining := (state.timing.step - state.elapsed) / phase_rate) > PERIOD:
+        swing = advanced_swing(state, swing, SwingGoal(goal, goal, remaining), WALK, PARAMETERS, FOOTHOLDS, PERIOD)
+        state = state._replace(elapsed=state.elapsed + phase_rate * PERIOD, swing=swing)
+        yield state.local(swing.motion.position)
+
+
 @given(st.floats(-0.7, -0.5), st.floats(0.05, 0.2), st.floats(0.2, 0.5), st.floats(1.0, 2.0))
 def test_a_foot_from_across_is_aside_before_its_toes_reach_the_heel_of_the_stance_foot(
     behind: float, across: float, ahead: float, phase_rate: float
 ) -> None:
-    state, swing = first_swing(Plane())
-    start, goal = (state.stance_foot.position + place for place in (complex(behind, across), complex(ahead, -0.09)))
-    swing = swing._replace(start=start, motion=PlanarMotion(start))
-    while (remaining := (state.timing.step - state.elapsed) / phase_rate) > PERIOD:
-        swing = advanced_swing(state, swing, SwingGoal(goal, goal, remaining), WALK, PARAMETERS, FOOTHOLDS, PERIOD)
-        state = state._replace(elapsed=state.elapsed + phase_rate * PERIOD, swing=swing)
-        place = state.local(swing.motion.position)
+    for place in passing(complex(behind, across), 0j, complex(ahead, -0.09), phase_rate):
         if abs(place.real) < FOOT_LENGTH:
             assert -place.imag > FOOT_WIDTH
+
+
+@given(st.floats(-0.7, -0.3), st.floats(0.05, 0.2), st.floats(0.0, 2.0), st.floats(1.0, 2.0))
+def test_a_foot_from_across_is_not_thrown_aside(behind: float, across: float, speed: float, phase_rate: float) -> None:
+    for place in passing(complex(behind, across), speed + 0j, 0.4 - 0.09j, phase_rate):
+        assert -place.imag < 0.3
