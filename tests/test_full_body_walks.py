@@ -269,5 +269,5 @@ def test_a_heavy_hand_hangs_still_and_the_walker_is_as_fast_as_without(load: str
 
 def test_a_walker_with_a_passive_ankle_walks_from_a_disturbed_start() -> None:
     """The force on a foot that its spring turns is not limited; with the limit this walk ended at 7.8 s."""
-    fields = {"start.joint_noise": 0.01, "seed": 6, "duration": 9.0}
+    fields = {"start.joint_noise": "0.01", "seed": "6", "duration": "9.0"}
     assert simulate(load_scenario("ankle_prosthesis", fields)).end == "completed"
