@@ -34,7 +34,9 @@ def blend(start: float, end: float, time: float, duration: float) -> ScalarMotio
 
 
 def shortest_blend(change: float, max_acceleration: float) -> float:
-    """Duration of the shortest blend by a change within an acceleration; its peak is 10 / sqrt(3) |change| / time^2."""
+    """Duration [s] of the shortest blend by `change` whose acceleration, at most 10 / sqrt(3) |change| / time^2, is
+    within `max_acceleration`.
+    """
     return math.sqrt(10.0 / math.sqrt(3.0) * abs(change) / max_acceleration)
 
 

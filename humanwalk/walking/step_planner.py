@@ -180,13 +180,13 @@ class StepPlanner:
             phase_rate = timing.phase_rate(excess, timing.phase_rate_limit)
             remaining = (timing.step - state.elapsed) / phase_rate
             com = com_after(remaining, body.com, dcm, pivot, self.frequency)
+            local_com = state.local(com)
+            goal = state.world(placement.near_com(reachable, local_com))
             # At touchdown the foot will have passed the stance foot.
             landing, _ = placement.within_reach(desired, state.stance, reachable)
-            goal, expected = (
-                state.world(placement.near_com(foothold, state.local(com))) for foothold in (reachable, landing)
-            )
             growth = math.expm1(self.frequency * (timing.step - state.elapsed))
-            expected -= sensitivity * p.support.correctable(error, growth) * state.direction
+            correctable = sensitivity * p.support.correctable(error, growth) * state.direction
+            expected = state.world(placement.near_com(landing, local_com)) - correctable
             way = SwingGoal(goal, expected, remaining)
             swing = advanced_swing(state, swing, way, command, p, self._footholds, self._period)
             foothold = swing.foothold

@@ -93,7 +93,10 @@ def _moved(
     parameters: StepPlannerParameters,
     period: float,
 ) -> PlanarMotion:
-    """Motion over the level plane: on the way to the foothold, and around the stance foot."""
+    """Motion over the level plane: on the way to the foothold, and around the stance foot.
+
+    A foot that needs longer to move aside moves forward later.
+    """
     foothold, added, jerk_limit = swing.foothold.position, swing.clearance, parameters.swing.jerk_limit
     progress = state.timing.swing_progress(state.elapsed)
     landing, time = parameters.swing.landing(foothold, command.velocity * state.direction), remaining
@@ -105,7 +108,6 @@ def _moved(
     waypoint = parameters.placement.passing_waypoint(start, foot, goal, state.stance)
     if waypoint is None:
         return swing.motion.towards(landing, time, period, jerk_limit)
-    # A foot that needs longer to move aside moves forward later.
     point, fraction = waypoint
     aside = shortest_blend((point - foot).imag, parameters.placement.passing_acceleration)
     aside = max(aside, fraction * remaining)

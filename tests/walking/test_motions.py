@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.walking.motions import PiecewiseCubic, PlanarMotion, ScalarMotion, blend
+from humanwalk.walking.motions import PiecewiseCubic, PlanarMotion, ScalarMotion, blend, shortest_blend
 
 DT = 0.004
 numbers = st.floats(-10.0, 10.0)
@@ -32,6 +32,13 @@ def test_a_faster_clock_shortens_a_blend(start: float, end: float, time: float, 
 def test_a_blend_rests_before_its_start_and_after_its_end(start: float, end: float, duration: float) -> None:
     assert blend(start, end, -0.1, duration) == pytest.approx((start, 0.0, 0.0), abs=1e-9)
     assert blend(start, end, duration + 0.1, duration) == pytest.approx((end, 0.0, 0.0), abs=1e-9)
+
+
+@given(st.floats(-2.0, 2.0).filter(lambda change: abs(change) > 0.01), st.floats(10.0, 200.0))
+def test_the_largest_acceleration_of_the_shortest_blend_is_the_given_one(change: float, limit: float) -> None:
+    duration = shortest_blend(change, limit)
+    largest = max(abs(blend(0.0, change, k / 1000 * duration, duration).acceleration) for k in range(1001))
+    assert largest == pytest.approx(limit, rel=1e-4)
 
 
 @given(numbers, numbers, st.floats(0.01, 0.99))
