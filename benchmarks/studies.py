@@ -54,6 +54,7 @@ KEPT_OF = {
     ),
     human_likeness.STUDY: human_likeness.COLUMNS,
     "likeness_bodies": human_likeness.COLUMNS,
+    "likeness_speeds": human_likeness.COLUMNS,
 }
 """Further columns of single studies."""
 
@@ -293,7 +294,7 @@ def likeness_bodies() -> str:
 
     def line(body: str, walks: Iterable[Row]) -> list[str]:
         compared = ({**row, GAIT: "default", FORWARD: speed} for row, speed in zip(walks, speeds, strict=True))
-        return [body, *(f"{human_likeness.goals_text(row)}; {human_likeness.score_text(row)} %" for row in compared)]
+        return [body, *map(_goals_and_score, compared)]
 
     def lines(rows: list[Row]) -> Iterator[list[str]]:
         of_the_man = study_results(human_likeness.STUDY).table.to_pylist()
@@ -303,6 +304,22 @@ def likeness_bodies() -> str:
 
     headings = ["body", *(f"{speed:g} m/s" for speed in speeds)]
     return study_section("likeness_bodies", lambda rows: table(headings, lines(rows)))
+
+
+def likeness_speeds() -> str:
+    """Goals of the walk, and its score, a line without a style and one with it."""
+
+    def lines(rows: list[Row]) -> Iterator[list[str]]:
+        for gait, walks in human_likeness.by_gait(rows).items():
+            yield [TITLES[gait], *map(_goals_and_score, walks)]
+
+    speeds = load_study("likeness_speeds").factors[FORWARD].levels()
+    headings = ["", *(f"{speed:g} m/s" for speed in speeds)]
+    return study_section("likeness_speeds", lambda rows: table(headings, lines(rows)))
+
+
+def _goals_and_score(row: Row) -> str:
+    return f"{human_likeness.goals_text(row)}; {human_likeness.score_text(row)} %"
 
 
 def study_table(name: str, headings: Sequence[str], line: Callable[[Row], list[str]]) -> str:
@@ -387,7 +404,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_invariance,
     ),
     "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
-    "likeness.md": (likeness, likeness_bodies, normative_seeds),
+    "likeness.md": (likeness, likeness_speeds, likeness_bodies, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),
 }

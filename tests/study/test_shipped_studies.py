@@ -44,6 +44,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("actuations", 3),
         ("likeness", 12),
         ("likeness_bodies", 27),
+        ("likeness_speeds", 10),
         ("normative_seeds", 20),
         ("subjects_adults", 100),
         ("subjects_children", 40),
@@ -58,6 +59,8 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_stops", 60),
         ("terrain_pushes", 80),
         ("terrain_bodies", 80),
+        ("terrain_mixed", 90),
+        ("terrain_stairs_pushes", 64),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
