@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from humanwalk.numerics import Array
-from humanwalk.numerics.scalars import wrapped
+from humanwalk.numerics.scalars import clip, wrapped
 from humanwalk.terrain.face import surface_axes
 from humanwalk.walking.command import Command
 from humanwalk.walking.foot_rockers import Rollover
@@ -36,7 +36,8 @@ def rollover(
     Its speed is the commanded one, or less if the step is short for an ordinary one, or backward. A foot that is steep
     when it leaves the ground below the body catches the ground with its toes. In a step up or down it is large, and so
     it is before a swing that raises the foot: the ankle of a foot that rises behind the body does not bend so far that
-    the foot could be level, nor does that of a foot below which the body sinks.
+    the foot could be level, nor does that of a foot below which the body sinks. A foot that is not behind the other one
+    stays flat: on its ball it would push a body backward that has to step back.
 
     Args:
         state: State of the planner.
@@ -49,6 +50,7 @@ def rollover(
     length = ((goal.position - start.position) / state.direction).real
     swing = parameters.swing
     climbing = max(1.0 - swing.rolling_share(start.step_to(goal)), swing.raising_share(raised))
+    climbing *= clip(length / parameters.placement.abreast, 0.0, 1.0)
     duration = parameters.timing.at_speed(command.forward).step
     ordinary = min(command.forward, SHORT_STEP * length / duration)
     speed = (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)

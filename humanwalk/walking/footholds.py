@@ -105,8 +105,7 @@ def places_on(face: Face, desired: complex, yaw: float, sole: SoleExtent, search
         may protrude; or the sole is in the middle of a face that is long enough for it, and its heel protrudes from a
         shorter one. None on a face that is shorter than the sole by more than `max_overhang`.
     """
-    u, across = cmath.exp(1j * yaw), 1j * sole.half_width
-    corners = [u * (x + y) for x in (-sole.back, sole.front) for y in (-across, across)]
+    u, corners = cmath.exp(1j * yaw), _corners(yaw, sole)
     xs, ys = (
         _places_along(low - min(parts), high - max(parts), value, ahead, search)
         for low, high, parts, value, ahead in (
@@ -115,6 +114,18 @@ def places_on(face: Face, desired: complex, yaw: float, sole: SoleExtent, search
         )
     )
     return [complex(x, y) for x in xs for y in ys]
+
+
+def lies_on(face: Face, place: complex, yaw: float, sole: SoleExtent) -> bool:
+    """Whether a sole with its ankle at a place lies on a face, within its edges."""
+    corners = place + np.array(_corners(yaw, sole))
+    return bool((face.margin(np.stack((corners.real, corners.imag), axis=-1)) >= 0.0).all())
+
+
+def _corners(yaw: float, sole: SoleExtent) -> list[complex]:
+    """Corners of a sole from its ankle [m]."""
+    u, across = cmath.exp(1j * yaw), 1j * sole.half_width
+    return [u * (x + y) for x in (-sole.back, sole.front) for y in (-across, across)]
 
 
 def _places_along(first: float, last: float, desired: float, ahead: float, search: FootholdSearch) -> list[float]:

@@ -141,6 +141,8 @@ class PhaseTransitions:
         right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
         is_stepping = is_moving or not self._can_stand(right, left, state.heading, dcm)
+        is_paused = state.preview.command is not None and state.largest_error >= self._parameters.caution.pause_error
+        command = command.at_pace(0.0) if is_paused else command
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
         caution = self._parameters.caution.after(state.caution, state.largest_error)
@@ -165,7 +167,7 @@ class PhaseTransitions:
             ground=state.ground,
             caution=caution,
         )
-        return self._look_ahead(landed, command, state.preview) if is_stepping else landed
+        return self._look_ahead(landed, command, state.preview, is_paused) if is_stepping else landed
 
     def _catch(self, state: PlannerState, command: Command, dcm: complex) -> PlannerState:
         """Begin a careful step from standing, on the foot with the smaller lateral distance to the DCM."""
@@ -190,13 +192,16 @@ class PhaseTransitions:
         apart = (left.position - right.position) / cmath.exp(1j * heading) - 1j * p.placement.step_width
         return abs(apart) <= p.stand_spread and p.support.outside(dcm, right.position, heading, left.position) == 0.0
 
-    def _look_ahead(self, state: PlannerState, command: Command, before: Preview = NO_PREVIEW) -> PlannerState:
+    def _look_ahead(
+        self, state: PlannerState, command: Command, before: Preview = NO_PREVIEW, is_paused: bool = False
+    ) -> PlannerState:
         """The state with the next footholds, and with caution, duration and speed of the step that suit them.
 
         Args:
             state: State at the beginning of a step.
             command: The command.
             before: What was planned in the step before.
+            is_paused: Whether the command holds for this step on regular footholds, too.
         """
         gait, preview = self._preview(state, command, before)
         careful = self._cautious(state, command, preview)
@@ -211,7 +216,7 @@ class PhaseTransitions:
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
             raised=(behind, stance),
-            command=command if any(preview.moves) else None,
+            command=command if is_paused or any(preview.moves) else None,
         )
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)

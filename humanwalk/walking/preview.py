@@ -87,7 +87,8 @@ class Preview(NamedTuple):
         durations: Those of the steps after this one, relative to this one; 1 on a plane.
         raised: Heights by which the foot behind and the stance foot rise in their next swings, to the foothold and over
             what they clear [m]; 0 on a plane.
-        command: The command for which irregular footholds were planned; None on a plane, where the command may change.
+        command: The command for which irregular footholds were planned, without forward speed in a pause after a
+            disturbance; None on a plane, where the command may change.
     """
 
     footholds: tuple[Foothold, ...] = ()

@@ -19,7 +19,7 @@ from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import quintic_blend
 from humanwalk.quantity import quantity
 from humanwalk.terrain.terrain import Ground
-from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.footholds import Foothold, lies_on
 from humanwalk.walking.motions import PiecewiseCubic, ScalarMotion
 
 INTERVALS = 16
@@ -169,7 +169,7 @@ def clearance(
         law: Parameters.
         swing: The swing without addition.
     """
-    if start.face.covers_as(goal.face):
+    if start.face.covers_as(goal.face) and lies_on(start.face, start.position, yaw, sole):
         return Clearance().raised(ground.unseen)
     share = np.linspace(0.0, 1.0, SAMPLES)
     above = height_above_plane(ground, start, goal, share, yaw, sole)

@@ -6,6 +6,7 @@ Points of the level plane are complex numbers x + iy [m].
 from typing import NamedTuple
 
 from humanwalk.walking.command import Command
+from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion, shortest_blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
@@ -73,7 +74,7 @@ def _with_foothold(
         for point in (goal.desired, goal.expected)
     )
     # The desired foothold varies within a step; near a riser it would delay the foot for the rest of the swing.
-    feet = (state.old_foot, landing)
+    feet = (_left(state, swing, landing), landing)
     now = state.timing.swing_progress(state.elapsed), swing.motion.position
     ordinary = OrdinarySwing(swing.lowest, now=now)
     added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, ordinary)
@@ -83,6 +84,15 @@ def _with_foothold(
         rise=swing.rise + slow * (place.ground - state.old_foot.ground - swing.rise),
         clearance=swing.clearance.filtered(added, slow),
     )
+
+
+def _left(state: PlannerState, swing: Swing, landing: Foothold) -> Foothold:
+    """The foothold that the foot left; where it was at lift-off if it returns to the face.
+
+    The rise of its heel has moved it forward, and its toes may be over the next tread.
+    """
+    stood = state.old_foot
+    return stood._replace(position=swing.start) if stood.face.covers_as(landing.face) else stood
 
 
 def _moved(

@@ -14,7 +14,7 @@ from humanwalk.numerics import Array
 from humanwalk.terrain import Course, Face, Plane
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Obstacle, Stairs, Stones
-from humanwalk.walking.footholds import FREE, LEVEL, Foothold, FootholdSearch, nearest_foothold, places_on
+from humanwalk.walking.footholds import FREE, LEVEL, Foothold, FootholdSearch, lies_on, nearest_foothold, places_on
 
 SOLE = SoleExtent(back=0.055, front=0.211, half_width=0.048)
 LENGTH = SOLE.back + SOLE.front
@@ -54,6 +54,13 @@ def test_on_a_large_face_the_sole_keeps_its_distance_from_the_edges(desired: com
 def test_a_place_with_enough_room_is_not_moved(desired: complex, yaw: float) -> None:
     if face(1.0).margin(corners(desired, yaw)).min() > SEARCH.edge_margin:
         assert places_on(face(1.0), desired, yaw, SOLE, SEARCH) == [desired]
+
+
+@given(points, yaws)
+def test_a_sole_lies_on_a_face_when_no_corner_is_beyond_an_edge(place: complex, yaw: float) -> None:
+    margin = face(1.0).margin(corners(place, yaw)).min()
+    if abs(margin) > 1e-9:
+        assert lies_on(face(1.0), place, yaw, SOLE) == (margin > 0.0)
 
 
 def test_on_a_face_without_room_for_the_margin_the_sole_is_in_the_middle() -> None:

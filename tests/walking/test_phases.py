@@ -113,6 +113,23 @@ def test_after_a_large_error_of_the_dcm_the_next_steps_are_careful() -> None:
     assert CAREFUL < state.timing.step < TIMING.step
 
 
+@pytest.mark.parametrize("share", [0.99, 1.01])
+def test_after_a_larger_error_the_next_step_on_stairs_has_no_forward_speed(share: float) -> None:
+    stairs, error = on_course(Stairs(number=10)), share * PARAMETERS.caution.pause_error
+    disturbed = in_single_support(1.01, phases=stairs)._replace(largest_error=error)
+    planned = advance(stairs, disturbed, landed_at(0.4 - 0.1j), WALK).preview
+    assert planned.command == (WALK if share < 1.0 else WALK.at_pace(0.0))
+
+
+def test_on_a_plane_the_foothold_corrects_every_error_at_the_commanded_speed() -> None:
+    body, error = landed_at(0.5 - 0.1j), 2.0 * PARAMETERS.caution.pause_error
+    careful, disturbed = (
+        advance(LEVEL, in_single_support(1.01, phases=LEVEL)._replace(largest_error=e), body, WALK)
+        for e in (PARAMETERS.caution.full_error, error)
+    )
+    assert disturbed == careful
+
+
 def test_steps_on_a_plane_are_ordinary() -> None:
     state = advance(LEVEL, in_single_support(1.01, phases=LEVEL), landed_at(0.5 - 0.1j), WALK)
     assert state.caution == pytest.approx(0.0, abs=1e-9)

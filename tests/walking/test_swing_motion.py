@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from humanwalk.body.contact import SoleExtent
 from humanwalk.terrain.course import Course
 from humanwalk.terrain.plane import Plane
-from humanwalk.terrain.steps import Obstacle
+from humanwalk.terrain.steps import Obstacle, Stairs
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.motions import PlanarMotion
@@ -67,6 +67,26 @@ def test_a_foothold_that_is_desired_for_a_moment_does_not_change_how_the_foot_cl
 def test_a_foot_that_will_land_at_the_beam_sinks_last() -> None:
     assert swung((AT_THE_BEAM, AT_THE_BEAM)).clearance.arrive < 1.0
     assert swung((BEYOND, BEYOND)).clearance.arrive == pytest.approx(1.0)
+
+
+@given(st.floats(0.0, 0.09), st.floats(-0.03, 0.03))
+def test_a_foot_that_returns_to_its_tread_clears_the_next_one_over_which_its_toes_are(
+    moved: float, along: float
+) -> None:
+    stairs = Stairs(number=4)
+    state, swing = first_swing(Course((stairs,), run_up=FOOTHOLDS.sole.front + 0.02))
+    swing = swing._replace(start=swing.start + moved, motion=PlanarMotion(swing.start + moved))
+    state = state._replace(swing=swing)
+    goal = state.old_foot.position + min(along, 0.0)
+    remaining = state.timing.step - state.elapsed
+    added = advanced_swing(
+        state, swing, SwingGoal(goal, goal, remaining), WALK, PARAMETERS, FOOTHOLDS, PERIOD
+    ).clearance
+    if moved > 0.02:
+        assert max(added.lift) > stairs.rise
+        assert added.arrive < 1.0
+    else:
+        assert not any(added.lift)
 
 
 def passing(start: complex, velocity: complex, goal: complex, phase_rate: float) -> Iterator[complex]:

@@ -1,10 +1,13 @@
 """The balanced walker on ground that it knows, and on a slope that it does not; the thesis' walker on stairs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.study.study import load_study
 
 pytestmark = pytest.mark.slow
 
@@ -116,6 +119,22 @@ def test_on_stairs_it_stops_with_both_feet_on_one_tread(direction: str) -> None:
     assert 0.6 < signals["com.x_m"][-1] < 0.6 + 8 * 0.28
     right, left = (signals[f"{side}_sole.z_m"][-1] for side in ("right", "left"))
     assert right == pytest.approx(left, abs=0.03)
+
+
+@pytest.mark.parametrize("ground", ["up", "down"])
+def test_pushed_backward_on_stairs_it_keeps_its_balance_and_walks_on(ground: str) -> None:
+    study = load_study("terrain_stairs_pushes")
+    pushed = {"ground": ground, "pushes.given.0.impulse": 10.0, "pushes.given.0.time": 6.0}
+    scenario = next(
+        scenario
+        for scenario in map(study.scenario_at, (point for point in study.points if pushed.items() <= point.items()))
+        if scenario.pushes.given[0].direction == pytest.approx(np.pi)
+    )
+    outcome = simulate(replace(scenario, duration=9.5))
+    assert outcome.end == "completed"
+    x, t = (outcome.signals[name].to_numpy() for name in ("com.x_m", "time_s"))
+    at_the_push = np.searchsorted(t, 6.0)
+    assert x[-1] > x[at_the_push] + 0.29
 
 
 def test_the_held_walk_of_the_thesis_climbs_stairs_with_its_feet_on_the_treads() -> None:
