@@ -32,9 +32,10 @@ class Caution:
     """Share of the caution of a step that remains in the next one."""
 
     pause_error: float = quantity(0.6, "m", 0.0, 10.0)
-    """Error from which on the next step on irregular footholds has no forward speed: steps up and down last long, and
-    on a tread a foothold corrects little. In undisturbed walks on stairs, boxes, stones and beams the error is 0.2 to
-    0.53 m, after a push of 10 N s on stairs 0.9 m (docs/decisions/0049-pushes-on-stairs.md)."""
+    """Error from which on the next step on irregular footholds has no forward speed if the DCM is behind the new foot:
+    steps up and down last long, and on a tread a foothold corrects little. In undisturbed walks on stairs, boxes,
+    stones and beams the error is 0.2 to 0.53 m, after a push of 10 N s on stairs 0.9 m
+    (docs/decisions/0049-pushes-on-stairs.md)."""
 
     lift: float = quantity(0.045, "m", 0.0, 0.3)
     """Rise of the ankle above its height at toe-off in a careful step, if that is more than in an ordinary one."""

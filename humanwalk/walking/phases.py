@@ -141,7 +141,7 @@ class PhaseTransitions:
         right, left = (Foothold.on(state.ground, foot.position) for foot in (body.right, body.left))
         midpoint = 0.5 * (right.position + left.position)
         is_stepping = is_moving or not self._can_stand(right, left, state.heading, dcm)
-        is_paused = state.preview.command is not None and state.largest_error >= self._parameters.caution.pause_error
+        is_paused = self._lags(state, body, dcm)
         command = command.at_pace(0.0) if is_paused else command
         following = self._parameters.path
         path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
@@ -168,6 +168,12 @@ class PhaseTransitions:
             caution=caution,
         )
         return self._look_ahead(landed, command, state.preview, is_paused) if is_stepping else landed
+
+    def _lags(self, state: PlannerState, body: BodyState, dcm: complex) -> bool:
+        """Whether the DCM is behind the foot that lands on an irregular foothold, after a large error."""
+        ahead = ((dcm - body.foot(state.swing_side).position) / state.direction).real
+        is_large = state.largest_error >= self._parameters.caution.pause_error
+        return state.preview.command is not None and is_large and ahead < self._parameters.support.center
 
     def _catch(self, state: PlannerState, command: Command, dcm: complex) -> PlannerState:
         """Begin a careful step from standing, on the foot with the smaller lateral distance to the DCM."""

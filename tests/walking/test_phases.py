@@ -114,11 +114,13 @@ def test_after_a_large_error_of_the_dcm_the_next_steps_are_careful() -> None:
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
-def test_after_a_larger_error_the_next_step_on_stairs_has_no_forward_speed(share: float) -> None:
+@pytest.mark.parametrize("ahead", [-0.1, 0.2])
+def test_on_stairs_a_body_that_lags_after_a_large_error_pauses(share: float, ahead: float) -> None:
     stairs, error = on_course(Stairs(number=10)), share * PARAMETERS.caution.pause_error
     disturbed = in_single_support(1.01, phases=stairs)._replace(largest_error=error)
-    planned = advance(stairs, disturbed, landed_at(0.4 - 0.1j), WALK).preview
-    assert planned.command == (WALK if share < 1.0 else WALK.at_pace(0.0))
+    body = landed_at(0.4 - 0.1j)
+    planned = stairs.advance(disturbed, body, WALK, dcm=body.right.position + ahead).preview
+    assert planned.command == (WALK.at_pace(0.0) if share > 1.0 and ahead < 0.0 else WALK)
 
 
 def test_on_a_plane_the_foothold_corrects_every_error_at_the_commanded_speed() -> None:
