@@ -74,7 +74,7 @@ def _with_foothold(
         for point in (goal.desired, goal.expected)
     )
     # The desired foothold varies within a step; near a riser it would delay the foot for the rest of the swing.
-    feet = (_left(state, swing, landing), landing)
+    feet = (_origin(state, swing, landing), landing)
     now = state.timing.swing_progress(state.elapsed), swing.motion.position
     ordinary = OrdinarySwing(swing.lowest, now=now)
     added = clearance(state.ground, *feet, yaw, footholds.sole, parameters.clearance, ordinary)
@@ -86,7 +86,7 @@ def _with_foothold(
     )
 
 
-def _left(state: PlannerState, swing: Swing, landing: Foothold) -> Foothold:
+def _origin(state: PlannerState, swing: Swing, landing: Foothold) -> Foothold:
     """The foothold that the foot left; where it was at lift-off if it returns to the face.
 
     The rise of its heel has moved it forward, and its toes may be over the next tread.
