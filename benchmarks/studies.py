@@ -90,6 +90,14 @@ def balance_speeds() -> str:
     )
 
 
+def balance_fast() -> str:
+    return study_table(
+        "balance_fast",
+        ["contact", "commanded", *WALKED, "steps"],
+        lambda row: [row[CONTACT], f"{row[FORWARD]:g} m/s", *_walked(row), str(row["steps"])],
+    )
+
+
 def balance_paths() -> str:
     return study_table(
         "balance_paths",
@@ -149,6 +157,13 @@ def balance_pushes() -> str:
 
 def balance_pushes_60() -> str:
     return study_section("balance_pushes_60", _pushes_by_time)
+
+
+def balance_fast_pushes() -> str:
+    def pushed(row: Row) -> str:
+        return f"{row[FORWARD]:g} m/s, {row[PUSH_TIME]:.1f} s"
+
+    return study_section("balance_fast_pushes", lambda rows: _pushes(rows, "speed, push at", pushed, _up_or_end))
 
 
 def _pushes_by_time(rows: list[Row]) -> str:
@@ -393,6 +408,8 @@ def _survival(rows: Sequence[Row]) -> tuple[str, str]:
 STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
     "balance.md": (
         balance_speeds,
+        balance_fast,
+        balance_fast_pushes,
         balance_paths,
         balance_bodies,
         balance_pushes,

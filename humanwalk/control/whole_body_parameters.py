@@ -72,9 +72,23 @@ class BallTwist:
     gain: float = quantity(1.0, "", 0.0, 10.0)
     """By how much the largest moment per vertical force grows with that distance."""
 
-    def at(self, dcm_error: float) -> float:
-        """Largest moment per vertical force [m] at a distance of the DCM from its reference [m]."""
-        return self.arm + self.gain * max(dcm_error - self.dcm_error, 0.0)
+    fast_speed: float = quantity(1.45, "m/s", 0.0, 5.0)
+    """Forward speed from which on the moment may be larger. The swinging leg turns the body about the vertical, the
+    more the faster the walk; a foot that carries too little moment pushes the body sideways instead, and the walker
+    fell at 1.6 m/s (docs/decisions/0050-fast-walks.md)."""
+
+    per_speed: float = quantity(0.2, "s", 0.0, 1.0)
+    """By how much the largest moment per vertical force grows with the speed above `fast_speed`."""
+
+    def at(self, dcm_error: float, speed: float) -> float:
+        """Largest moment per vertical force [m].
+
+        Args:
+            dcm_error: Distance of the DCM from its reference [m].
+            speed: Forward speed [m/s].
+        """
+        caught = self.gain * max(dcm_error - self.dcm_error, 0.0)
+        return self.arm + caught + self.per_speed * max(speed - self.fast_speed, 0.0)
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,7 @@ class WholeBodyQp:
         H += effort.T @ effort
         g += load[self._effort] / p.torque_unit @ effort
 
-        twist = np.pad(contacts.twist(p.ball_twist.at(reference.dcm_error)), ((0, 0), (0, m)))
+        twist = np.pad(contacts.twist(p.ball_twist.at(reference.dcm_error, reference.speed)), ((0, 0), (0, m)))
 
         distance = np.where(self._locked, 0.0, self._range - q[: m - 6])
         toward_limits = p.joint_limit_stiffness * distance - p.joint_limit_damping * v[: m - 6]

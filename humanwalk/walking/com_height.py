@@ -21,6 +21,13 @@ class ComHeight:
     standing: float = quantity(0.985, "", 0.8, 1.0)
     """The same in quiet standing."""
 
+    fast_speed: float = quantity(1.45, "m/s", 0.0, 5.0)
+    """Forward speed above which the mean height is lower. Before a long step the knee of the swinging leg is straight
+    too early otherwise (docs/decisions/0050-fast-walks.md)."""
+
+    lowering_per_speed: float = quantity(0.06, "s", 0.0, 0.5)
+    """Decrease of the mean height per speed above `fast_speed`."""
+
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
@@ -51,6 +58,16 @@ class ComHeight:
     def arc_amplitude(self, speed: float) -> float:
         """Amplitude of the arcs [m] at a forward speed [m/s]."""
         return self.amplitude * speed**2
+
+    def mean(self, speed: float, standing: float) -> float:
+        """Mean height in a level walk [m].
+
+        Args:
+            speed: Forward speed [m/s].
+            standing: Height of the center of mass with straight legs [m].
+        """
+        lowering = self.lowering_per_speed * max(speed - self.fast_speed, 0.0)
+        return self.walking * standing - self.arc_amplitude(speed) - lowering
 
     def max_com_height_for_reach(self, reach: complex, leg: float, standing: float) -> float:
         """Largest height of the center of mass above a foothold that a straight leg reaches [m].

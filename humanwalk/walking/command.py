@@ -45,7 +45,7 @@ class CommandPoint:
 
 
 TESTED = {
-    "forward": ("m/s", ((-0.5, 0.0), (0.3, 1.4))),
+    "forward": ("m/s", ((-0.5, 0.0), (0.3, 2.0))),
     "sideways": ("m/s", ((-0.3, 0.3),)),
     "turn": ("rad/s", ((-0.4, 0.4),)),
 }

@@ -242,7 +242,7 @@ class StepPlanner:
         if state.phase is Phase.STAND:
             goal = law.standing * self._standing_com_height
         else:
-            goal = law.walking * self._standing_com_height - law.arc_amplitude(forward_speed)
+            goal = law.mean(forward_speed, self._standing_com_height)
         acceleration = law.approach(state.height, state.height_rate, goal, max_height)
         mean = ScalarMotion(state.height, state.height_rate, acceleration)
         rate = state.height_rate + period * acceleration

@@ -31,6 +31,8 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
     ("name", "number"),
     [
         ("balance_speeds", 5),
+        ("balance_fast", 12),
+        ("balance_fast_pushes", 48),
         ("balance_seeds", 40),
         ("balance_paths", 6),
         ("balance_bodies", 8),
@@ -44,7 +46,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("actuations", 3),
         ("likeness", 12),
         ("likeness_bodies", 27),
-        ("likeness_speeds", 10),
+        ("likeness_speeds", 12),
         ("normative_seeds", 20),
         ("subjects_adults", 100),
         ("subjects_children", 40),

@@ -35,6 +35,19 @@ def test_in_standing_there_is_no_arc() -> None:
 
 
 LEG, STANDING = 0.864, 0.97
+
+
+@given(st.floats(-1.0, HEIGHT.fast_speed))
+def test_the_tops_of_the_arcs_are_as_high_up_to_the_fast_speed(speed: float) -> None:
+    top = HEIGHT.mean(speed, STANDING) + HEIGHT.arc_amplitude(speed)
+    assert top == pytest.approx(HEIGHT.walking * STANDING)
+
+
+@given(st.floats(HEIGHT.fast_speed, 3.0), st.floats(0.0, 0.5))
+def test_a_faster_walk_is_lower(speed: float, more: float) -> None:
+    lower, higher = (HEIGHT.mean(v, STANDING) + HEIGHT.arc_amplitude(v) for v in (speed + more, speed))
+    assert higher - lower == pytest.approx(HEIGHT.lowering_per_speed * more)
+
 distances = st.floats(-0.5, 0.5)
 
 

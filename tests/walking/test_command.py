@@ -15,8 +15,8 @@ def test_every_shipped_scenario_commands_tested_speeds(name: str) -> None:
     ("point", "problem"),
     [
         (
-            CommandPoint(time=2.0, forward=1.5),
-            "1.5 m/s at 2 s is not tested; tested: -0.5 to 0 and 0.3 to 1.4 m/s",
+            CommandPoint(time=2.0, forward=2.1),
+            "2.1 m/s at 2 s is not tested; tested: -0.5 to 0 and 0.3 to 2 m/s",
         ),
         (CommandPoint(forward=0.2), "forward 0.2 m/s"),
         (CommandPoint(forward=-0.6), "forward -0.6 m/s"),
