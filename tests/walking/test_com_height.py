@@ -48,6 +48,7 @@ def test_a_faster_walk_is_lower(speed: float, more: float) -> None:
     lower, higher = (HEIGHT.mean(v, STANDING) + HEIGHT.arc_amplitude(v) for v in (speed + more, speed))
     assert higher - lower == pytest.approx(HEIGHT.lowering_per_speed * more)
 
+
 distances = st.floats(-0.5, 0.5)
 
 
