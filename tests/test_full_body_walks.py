@@ -207,6 +207,26 @@ def test_stopping_ends_in_standing_on_both_feet() -> None:
         assert 0.3 < share.min() < share.max() < 0.7
 
 
+@pytest.mark.parametrize("fast", [1.6, 1.8])
+def test_the_feet_of_a_fast_walk_do_not_cross(fast: float) -> None:
+    """Decision 0050: each step was narrower than the one before, until the feet crossed and the walker fell."""
+    outcome = simulate(
+        parse_scenario(f"""
+        duration: 14.0
+        controller: {{balanced: {{command: {{points: [{{time: 0.5, forward: {fast}}}]}}}}}}
+    """)
+    )
+    assert outcome.end == "completed"
+    time, speed, right, left = (
+        outcome.signals[name].to_numpy() for name in ("time_s", "com.velocity_x_m_s", "right_sole.y_m", "left_sole.y_m")
+    )
+    steady = time >= 8.0
+    assert speed[steady].mean() == pytest.approx(fast, rel=0.08)
+    landings = [row for side in SIDES for row in events_of(outcome.signals, side).touchdowns if steady[row]]
+    assert len(landings) > 10
+    assert min(left[row] - right[row] for row in landings) > 0.05
+
+
 @pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0], ids=["forward", "left", "backward"])
 def test_a_standing_body_that_is_pushed_steps_and_stands_again(degrees: float) -> None:
     push = f"{{time: 1.0, impulse: {2.0 * IMPULSE}, direction: {np.deg2rad(degrees)}}}"
