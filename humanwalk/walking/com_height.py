@@ -22,8 +22,8 @@ class ComHeight:
     """The same in quiet standing."""
 
     fast_speed: float = quantity(1.45, "m/s", 0.0, 5.0)
-    """Forward speed above which the mean height is lower. Before a long step the knee of the swinging leg is straight
-    too early otherwise (docs/decisions/0050-fast-walks.md)."""
+    """Forward speed above which the mean height is lower. Before a long step the stop of the knee's range brakes the
+    swinging leg otherwise (docs/decisions/0050-fast-walks.md)."""
 
     lowering_per_speed: float = quantity(0.06, "s", 0.0, 0.5)
     """Decrease of the mean height per speed above `fast_speed`."""
