@@ -23,7 +23,7 @@ from humanwalk.quantity import ParameterError
 @app.command(
     rich_help_panel=SIMULATE,
     epilog="Examples: humanwalk walk  |  humanwalk walk thesis --duration 5 -o runs/short  |  "
-    'humanwalk walk walk --speed 1.2 --push "60 N s at 8 s from behind"  |  '
+    'humanwalk walk walk --speed 1.2 --push "40 N s at 8 s from behind"  |  '
     "humanwalk walk thesis --set controller.thesis.gait.path.step_height=0.12 --set contact=hydroelastic",
 )
 @takes_changes
