@@ -31,7 +31,7 @@ lint: .venv/.installed ## Check style, types and import layers
 	$(BIN)/lint-imports
 
 docs: .venv/.installed ## Build the book in build/docs; needs no network
-	@NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --quiet --strict
+	@NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --strict
 
 gallery: .venv/.installed ## Regenerate all pictures and videos of the book (a quarter of an hour)
 	@$(BIN)/python docs/make_gallery.py

@@ -44,7 +44,7 @@ REFERENCE_STEP = 0.000125
 WINDOW = 0.02
 """Over which ground forces are averaged [s]."""
 GRID = 0.01
-"""Between two instants at which angles and centre of mass are compared [s]."""
+"""Between two instants at which angles and center of mass are compared [s]."""
 
 SIMULATED = {"thesis": 2.2, "walk": 5.0}
 """Simulated time [s]: three strides of the thesis' walk; of the balanced one, the start and four steps."""
@@ -109,7 +109,7 @@ class Motion:
 
 
 def motion(variant: Variant, duration: float) -> Motion:
-    """Simulate without recording and keep force, angles and centre of mass of every step that is taken."""
+    """Simulate without recording and keep force, angles and center of mass of every step that is taken."""
     scenario = load_scenario(variant.scenario, variant.overrides)
     prepared = prepare(scenario, record=False)
     walker, joints = prepared.walker, JointMap.of(prepared.plant)

@@ -248,7 +248,7 @@ def draw(walk: str, shown: dict[str, Any], end: float) -> None:
     forces.axes[2].set_ylim(0.0, 1.1)
     for figure, names in (
         (forces, ("vertical [N]", "fore-aft [N]", "friction use")),
-        (soles, ("centre of pressure\nahead of ankle [cm]", "slip [mm/s]", "penetration [mm]")),
+        (soles, ("center of pressure\nahead of ankle [cm]", "slip [mm/s]", "penetration [mm]")),
     ):
         for axes, text in zip(figure.axes, names, strict=True):
             label(axes, "", text)

@@ -122,7 +122,7 @@ def mujoco() -> str:
         "angle_rms_rad": ("joint angles, Drake - MuJoCo, rms", 1e3, "mrad"),
         "tracking_rms_rad_drake": ("joint angles off their targets, Drake, rms", 1e3, "mrad"),
         "tracking_rms_rad_mujoco": ("the same, MuJoCo", 1e3, "mrad"),
-        "com_rms_m": ("centre of mass, Drake - MuJoCo, rms", 1e3, "mm"),
+        "com_rms_m": ("center of mass, Drake - MuJoCo, rms", 1e3, "mm"),
         "force_size_rms_N": ("ground force (20 ms means), Drake, rms", 1.0, "N"),
         "force_rms_N": ("ground force, Drake - MuJoCo, rms", 1.0, "N"),
         "final_vertical_over_weight_drake": ("ground and support, mean of the last 0.5 s, Drake", 1.0, "m g"),
@@ -139,7 +139,7 @@ def mujoco() -> str:
     return (
         f"Mass matrix in 50 random states: greatest difference {dynamics['mass_matrix_relative']:.1e} of its greatest "
         f"element; Coriolis, gyroscopic and gravity forces: {dynamics['bias_forces_relative']:.1e}. Free fall of a "
-        f"limp, turning body, 0.3 s: centre of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m "
+        f"limp, turning body, 0.3 s: center of mass off the parabola by {fall['com_off_parabola_m_drake']:.1e} m "
         f"(Drake) and {fall['com_off_parabola_m_mujoco']:.1e} m (MuJoCo), angles of the two within "
         f"{fall['angle_difference_rad']:.1e} rad.\n\n"
         + table(["", "standing", "thesis' walk"], rows)

@@ -17,10 +17,10 @@ class Flesh:
     """Hydroelastic modulus of the soles; the body tips over below 1e7 Pa."""
 
     sole_dissipation: float = quantity(1.0, "s/m", 0.0, 1e3)
-    """Hunt-Crossley dissipation of the soles."""
+    """Hunt-Crossley dissipation of the soles, with all other approximations."""
 
     sole_relaxation_time: float = quantity(0.02, "s", 0.0, 10.0)
-    """Relaxation time of the linear Kelvin-Voigt law that Drake's SAP solver uses for the soles."""
+    """Relaxation time of the soles' linear damping with `contact_approximation: sap`."""
 
     leg_stiffness: float = quantity(2.0e4, "N/m", 1.0, 1e9)
     """Point-contact stiffness of a leg that touches the other one."""

@@ -12,7 +12,7 @@ def clip(x: float, low: float, high: float) -> float:
 
 
 def wrapped(angle: float) -> float:
-    """Equivalent angle in [-pi, pi] [rad]."""
+    """Equivalent angle from -pi to pi [rad]."""
     return math.remainder(angle, 2.0 * math.pi)
 
 

@@ -72,7 +72,7 @@ def simulate_row(job: Job) -> Row:
 
 
 def measured(outcome: Outcome) -> Row:
-    """The measures of a run by dotted name: those of the summary, and the likeness of each angle to people's."""
+    """The measures of a run by dotted name: those of the summary, and likeness of angles, moments and powers."""
     summary = outcome.summary()
     row = _flat({name: value for name, value in summary.items() if name not in NOT_MEASURES})
     return row | _flat({"likeness": _likeness(outcome)})

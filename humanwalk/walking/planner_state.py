@@ -70,7 +70,7 @@ class PlannerState(NamedTuple):
         ground: What is known of the ground.
         zmp: Zero-moment point that was planned last [m].
         caution: How careful this step is, from 0 to 1; see `Caution`.
-        largest_error: Largest error of the DCM at touchdown that was expected in this step [m].
+        largest_error: Largest error of the DCM at touchdown that was predicted in this step [m].
     """
 
     phase: Phase

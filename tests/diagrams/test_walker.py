@@ -378,7 +378,7 @@ def test_standing_feet_and_support_carry_the_weight(stood: Walked) -> None:
     np.testing.assert_array_equal(forces[:, 7], 1.0)
 
 
-def test_standing_centre_of_pressure_is_inside_each_sole(stood: Walked) -> None:
+def test_standing_center_of_pressure_is_inside_each_sole(stood: Walked) -> None:
     forces, soles = stood.value("foot_forces").reshape(2, 8), stood.value("soles").reshape(2, 3)
     back, front = SOLE_PARTS[0].x[0], SOLE_PARTS[-1].x[1]
     for foot, sole in zip(forces, soles, strict=True):
@@ -388,7 +388,7 @@ def test_standing_centre_of_pressure_is_inside_each_sole(stood: Walked) -> None:
         assert foot[5] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_standing_centre_of_mass_stays(stood: Walked) -> None:
+def test_standing_center_of_mass_stays(stood: Walked) -> None:
     com = stood.value("com")
     np.testing.assert_allclose(com[1], 0.0, atol=1e-3)
     np.testing.assert_allclose(com[3:], 0.0, atol=0.01)

@@ -131,7 +131,7 @@ def test_friction_stays_in_its_cone_at_every_step_of_the_similar_approximation()
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_centre_of_pressure_is_under_the_loaded_foot(walk: Any, side: Side) -> None:
+def test_center_of_pressure_is_under_the_loaded_foot(walk: Any, side: Side) -> None:
     signals = walk[0].signals
     loaded = signals[f"{side}_foot.loaded"].to_numpy() > 0
     x, y = (
