@@ -38,7 +38,7 @@ def main(duration: float = 3.0) -> float:
     )
     bank = world.add(
         "actuators",
-        PdActuatorBank(plant, world.kp, world.kd, law="semi_implicit"),
+        PdActuatorBank(plant, world.kp, world.kd, "semi_implicit", np.full_like(world.kp, np.inf)),
         desired_state=solver.GetOutputPort("desired_state"),
         sample_time=solver.GetOutputPort("sample_time"),
         state=world.state,

@@ -14,7 +14,7 @@ from humanwalk.body.shapes import Cylinder, Vector3
 from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 from humanwalk.body.visual import Color, Visual, ball, capsule
 from humanwalk.numerics.scalars import clip
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.sides import Side
 
 SOCKET: Color = (0.80, 0.79, 0.75)
@@ -270,11 +270,16 @@ def _with_frame(skeleton: Skeleton, side: Side, body: str, end_joint: str, girth
         end_joint: Joint at the lower end of the segment.
         girth: Radius of the segment of the reference human [m].
         mass: Of the frame [kg].
+
+    Raises:
+        ParameterError: The body has a frame already.
     """
+    name = f"Device_{body}"
+    if skeleton.inboard(name):
+        raise ParameterError(f"side: {body} already has a frame; allowed: one on each segment; remove one device")
     along, across, _ = skeleton.size(body)
     length = -skeleton.joint(end_joint).origin[2]
     radius, outward = girth * across, 1.0 if side == "Left" else -1.0
-    name = f"Device_{body}"
     y: float = outward * (radius + 0.012)
     top, end = 0.42 * length, -0.5 * length
     drawn = (

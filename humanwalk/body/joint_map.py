@@ -16,6 +16,9 @@ from humanwalk.numerics import Array, Indices, Mask
 MAX_PLAY = 0.02
 """Largest range of a locked joint [rad]: one degree."""
 
+ROUNDING = 1e-9
+"""Error of a joint's range [rad] that comes from the ten digits of a model file."""
+
 
 @dataclass(frozen=True)
 class JointMap:
@@ -57,7 +60,7 @@ class JointMap:
     @property
     def locked(self) -> Mask:
         """Whether each joint has no more than play, so that its structure carries the torque, shape (n,)."""
-        return self.upper - self.lower <= MAX_PLAY
+        return self.upper - self.lower <= MAX_PLAY + ROUNDING
 
     def positions(self, state: Array) -> Array:
         """Return the joint angles [rad] of plant states [q; v] or positions q, shape (..., n)."""

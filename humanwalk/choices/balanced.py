@@ -25,6 +25,7 @@ from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.motion.walking_posture import height_ratio
 from humanwalk.numerics import Array
+from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import ParameterError, choice, quantity, tag_of
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.systems.load_observer import LoadObserver
@@ -124,11 +125,12 @@ class BalancedController:
         return {"command.points": [asdict(point) for point in self.command.points_at_speed(speed)]}
 
     def steady_from(self, subject: Subject) -> float:
-        """When the first change of speed is over and the walk has settled [s]."""
-        if not self.command.points:
+        """When the first speed that is commanded is reached and the walk has settled [s]."""
+        first = next((point for point in self.command.points if point.forward or point.sideways), None)
+        if first is None:
             return 0.0
-        first, time = self.command.points[0], subject.scale.time
-        ramp = abs(complex(first.forward, first.sideways)) / self.command.acceleration
+        time = subject.scale.time
+        ramp = max(abs(first.forward), abs(first.sideways)) / self.command.acceleration
         return first.time + time * self.planner.timing.weight_shift + ramp + time * SETTLING
 
     def fitted(self, subject: Subject) -> Self:
@@ -215,9 +217,11 @@ class BalancedController:
         return Command(state, time, feedforward=torque)
 
     def _hanging_arms(self, subject: Subject) -> dict[str, float]:
-        """Angles [rad] of hanging arms by joint; one that carries a load is straighter."""
+        """Angles [rad] of hanging arms by joint, within its range; an arm that carries a load is straighter."""
         elbows = {ARMS[side].elbow: arm.freedom() * self.elbow_flexion for side, arm in hanging_arms(subject).items()}
-        return elbows | {arm.wrist: self.wrist_flexion for arm in ARMS.values()}
+        angles = elbows | {arm.wrist: self.wrist_flexion for arm in ARMS.values()}
+        skeleton = subject.known_skeleton
+        return {name: clip(angle, *skeleton.joint(name).range_rad) for name, angle in angles.items()}
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         """Raise ParameterError: a plan depends on the simulated state."""

@@ -7,6 +7,4 @@ from humanwalk.walking.push import PushParameters
 def add_pushes(world: World, parameters: PushParameters) -> None:
     """Add `pushes`; its forces are empty where the scenario has none."""
     pushes = world.add("pushes", world.sources.pushes(world.plant, parameters, world.seed))
-    if pushes.live or parameters != PushParameters():
-        # Without pushes the plant would still evaluate them in every step.
-        world.spatial_forces.append(pushes.GetOutputPort("spatial_forces"))
+    world.spatial_forces.append(pushes.GetOutputPort("spatial_forces"))

@@ -8,9 +8,9 @@ import numpy as np
 from pydrake.math import RigidTransform
 
 from humanwalk.body import contact_spheres
-from humanwalk.body.joint_map import JointMap
+from humanwalk.body.joint_map import ROUNDING, JointMap
 from humanwalk.body.limbs import PELVIS
-from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.plant import body_plant
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, did_you_mean, quantity, require_in_range
@@ -18,10 +18,6 @@ from humanwalk.terrain import Terrain
 
 RATES = 1
 """Stream of the seed from which the rates' noise is drawn, independent of that of the angles."""
-
-
-ROUNDING = 1e-9
-"""Distance beyond a joint's range [rad] that comes from the ten digits of a model file."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +74,7 @@ def start_positions(
     Raises:
         ParameterError: a start angle names no joint or is beyond its range.
     """
-    plant = kinematics_plant(subject)
+    plant = body_plant(subject)
     context = plant.CreateDefaultContext()
     joints = JointMap.of(plant)
     for name in start.joint_angles:
@@ -87,8 +83,10 @@ def start_positions(
                 f"start.joint_angles.{name}: no such joint; allowed: the {len(joints.names)} joints of the body"
                 f"{did_you_mean(name, joints.names)}"
             )
-    angles = {**posture.angles, **start.joint_angles}
-    theta = np.array([angles.get(name, 0.0) for name in joints.names])
+    # An impaired joint may not reach the posture of the controller.
+    theta = np.clip([posture.angles.get(name, 0.0) for name in joints.names], joints.lower, joints.upper)
+    for name, angle in start.joint_angles.items():
+        theta[joints.names.index(name)] = angle
     for i in np.flatnonzero((theta < joints.lower - ROUNDING) | (theta > joints.upper + ROUNDING)):
         nearest = np.clip(theta[i], joints.lower[i], joints.upper[i])
         raise ParameterError(
@@ -112,7 +110,7 @@ def start_positions(
 
 def start_velocities(subject: Subject, start: StartParameters, seed: int) -> Array:
     """Velocities v of the plant at time zero, shape (nv,): 0 but for the noise on the joints' rates."""
-    plant = kinematics_plant(subject)
+    plant = body_plant(subject)
     joints = JointMap.of(plant)
     v = np.zeros(plant.num_velocities())
     v[joints.v] = start.rate_noise * np.random.default_rng((seed, RATES)).standard_normal(joints.v.size)

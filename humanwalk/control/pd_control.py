@@ -32,9 +32,11 @@ class PdDiscretization(Protocol):
 
     Attributes:
         takes_desired_state: whether the plant computes the law from its desired_state port.
+        keeps_effort_limits: whether the plant's actuators keep their effort limits.
     """
 
     takes_desired_state: bool
+    keeps_effort_limits: bool
 
     def install(self, plant: MultibodyPlant, actuator: JointActuatorIndex, kp: float, kd: float) -> None:
         """Give an actuator and its joint the part of the law that the plant computes; before Finalize."""
@@ -49,7 +51,7 @@ class PdDiscretization(Protocol):
 class ImplicitPd:
     """The plant's own PD: stable at any step; one solver constraint per joint."""
 
-    takes_desired_state = True
+    takes_desired_state, keeps_effort_limits = True, True
 
     def install(self, plant: MultibodyPlant, actuator: JointActuatorIndex, kp: float, kd: float) -> None:
         plant.get_mutable_joint_actuator(actuator).set_controller_gains(PdControllerGains(p=kp, d=kd))
@@ -67,7 +69,7 @@ class SemiImplicitPd:
     A joint at its effort limit receives up to kd times the change of its velocity in a step more than the limit.
     """
 
-    takes_desired_state = False
+    takes_desired_state, keeps_effort_limits = False, False
 
     def install(self, plant: MultibodyPlant, actuator: JointActuatorIndex, kp: float, kd: float) -> None:
         joint = plant.get_mutable_joint(plant.get_joint_actuator(actuator).joint().index())
@@ -85,7 +87,7 @@ class SemiImplicitPd:
 class ExplicitPd:
     """The whole law as torque: with the thesis' gains stable up to a tenth of a millisecond."""
 
-    takes_desired_state = False
+    takes_desired_state, keeps_effort_limits = False, True
 
     def install(self, plant: MultibodyPlant, actuator: JointActuatorIndex, kp: float, kd: float) -> None:
         pass

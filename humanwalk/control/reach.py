@@ -98,8 +98,8 @@ def require_reachable(subject: Subject, path: FootPathParameters, parameters: In
     plant = kinematics_plant(subject)
     cycle = FootCycle(path)
     below_hips = skeleton.hip_height - path.offset
-    leg = LegKinematics(plant, PELVIS, LEGS["Right"].sole, LEGS["Right"].chain)
-    theta = 0.5 * (leg.lower + leg.upper)
+    legs = [LegKinematics(plant, PELVIS, LEGS[side].sole, LEGS[side].chain) for side in SIDES]
+    theta = [0.5 * (leg.lower + leg.upper) for leg in legs]
     toe = max(sphere.center[0] + skeleton.origins[sphere.body][0] for sphere in contact_spheres(skeleton))
     for phase in np.arange(PHASES) / PHASES:
         x, z = cycle.position(float(phase))
@@ -110,18 +110,17 @@ def require_reachable(subject: Subject, path: FootPathParameters, parameters: In
                 f"into the ground at phase {phase:.2f}; allowed with step_height {path.step_height:g}: 0 to about "
                 f"{0.8 * path.step_height / toe:.2f} rad; lower it, or lift the foot higher"
             )
-        X_PS = RigidTransform(
-            RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0]),
-            np.array([x - 0.5 * path.step_length, -skeleton.hip_half_width, z - below_hips]),
-        )
-        nearest = nearest_pose(leg, X_PS, theta, parameters)
-        theta = nearest.theta
-        if not nearest.is_near(TOLERANCE_RAD):
-            raise ParameterError(
-                f"controller.thesis.gait.path: at phase {phase:.2f} of the cycle {nearest.difference(TOLERANCE_RAD)}; "
-                f"change step_height ({path.step_height:g}), toe_drop ({path.toe_drop:g}), "
-                f"step_length ({path.step_length:g}) or offset ({path.offset:g})"
-            )
+        R_PS = RotationMatrix.MakeYRotation(cycle.pitch(float(phase))[0])
+        for i, y in enumerate((-skeleton.hip_half_width, skeleton.hip_half_width)):
+            X_PS = RigidTransform(R_PS, np.array([x - 0.5 * path.step_length, y, z - below_hips]))
+            nearest = nearest_pose(legs[i], X_PS, theta[i], parameters)
+            theta[i] = nearest.theta
+            if not nearest.is_near(TOLERANCE_RAD):
+                raise ParameterError(
+                    f"controller.thesis.gait.path: at phase {phase:.2f} of the cycle "
+                    f"{nearest.difference(TOLERANCE_RAD)}; change step_height ({path.step_height:g}), "
+                    f"toe_drop ({path.toe_drop:g}), step_length ({path.step_length:g}) or offset ({path.offset:g})"
+                )
 
 
 def require_reachable_on(

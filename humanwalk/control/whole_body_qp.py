@@ -102,8 +102,10 @@ class WholeBodyQp:
         radius = np.repeat((parameters.rotation_radius, 1.0, parameters.rotation_radius), (3, 3, len(weighted)))
         self._regularization = np.diag(radius**2 * (EFFORT_COST + np.concatenate((np.zeros(6), self._weight))))
 
-        margin = parameters.knee_margin * np.isin(self.names, JOINT_GROUPS["knee"])
-        self._range = np.array((joints.lower[order] + margin, joints.upper[order]))[:, : m - 6]
+        lower, upper = joints.lower[order], joints.upper[order]
+        knees = np.isin(self.names, JOINT_GROUPS["knee"])
+        lower[knees] = np.clip(parameters.knee_margin, lower[knees], upper[knees])
+        self._range = np.array((lower, upper))[:, : m - 6]
         # A locked joint is held by its structure, anywhere in its play.
         locked = joints.locked[order]
         self.limits[locked] = 0.0

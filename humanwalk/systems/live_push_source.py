@@ -12,8 +12,6 @@ class LivePushSource(PushSource):
     All of them, given to a `PushSource` from the beginning, output the same bits.
     """
 
-    live = True
-
     def push(self, context: Context, push: Push) -> None:
         """Add a push.
 

@@ -52,16 +52,19 @@ class PdActuatorBank(LeafSystem):
             plant: the finalized plant that it drives, on which `install_gains` was called.
             kp, kd: gains [N m/rad], [N m s/rad], shape (n,), in actuator order.
             law: discretization of the law.
-            effort_limits: [N m], shape (n,); default: the plant's.
+            effort_limits: [N m], shape (n,), infinite for none; default: the plant's.
 
         Raises:
             ParameterError: the law is unstable at the plant's time step.
+            ValueError: no effort limits are given, and `install_gains` has replaced the plant's.
         """
         super().__init__()
         joints = JointMap.of(plant)
         self._q, self._v = joints.q, joints.num_positions + joints.v
         self._kp, self._kd = kp, kd
         self._joint_damping = PD_LAWS[law].joint_damping(kd)
+        if effort_limits is None and not PD_LAWS[law].keeps_effort_limits:
+            raise ValueError(f"effort_limits: None; allowed: (n,), as the law {law} replaced the plant's; give them")
         self._effort_limits = joints.effort_limits if effort_limits is None else effort_limits
         self._time_step = plant.time_step()
         if plant.time_step() > 0:

@@ -27,15 +27,10 @@ class PushSource(LeafSystem):
 
     The pushes are a parameter of the context, so that one walker can be pushed in many ways from one state.
 
-    Attributes:
-        live: Whether pushes may be added while the simulation runs.
-
     Outputs:
         spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
         force: (3) sum of all pushes in W [N].
     """
-
-    live = False
 
     def __init__(self, plant: MultibodyPlant, parameters: PushParameters, seed: int) -> None:
         """Create the source.

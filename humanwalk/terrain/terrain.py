@@ -115,11 +115,6 @@ class Terrain(Ground, Protocol):
         return ()
 
 
-def height_at(ground: Ground, point: complex) -> float:
-    """Return the height [m] of the ground at a point x + iy [m]."""
-    return float(ground.height(np.array((point.real, point.imag))))
-
-
 def highest_along(ground: Ground, path: Array, half_width: float) -> float:
     """Return the greatest height [m] of the ground under a strip, such as the one that a swinging foot crosses.
 

@@ -119,7 +119,7 @@ class PathFollowing:
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
     """Largest speed along the path."""
 
-    min_speed: float = quantity(0.1, "m/s", 0.0, 1.0)
+    min_speed: float = quantity(0.1, "m/s", 0.01, 1.0)
     """Commanded speed below which the walker turns with the command instead of with the path."""
 
     spacing: float = quantity(0.05, "m", 0.01, 0.5)

@@ -56,7 +56,7 @@ class StepPlacement:
     max_length: float = quantity(1.0, "m", 0.1, 2.0)
     """Largest distance of a foothold ahead of or behind the stance foot."""
 
-    abreast: float = quantity(0.15, "m", 0.0, 0.5)
+    abreast: float = quantity(0.15, "m", 0.01, 0.5)
     """Distance ahead of or behind the stance foot up to which the legs are side by side."""
 
     min_own_side_offset: float = quantity(0.05, "m", 0.0, 0.3)

@@ -129,9 +129,7 @@ def foot_behind(
     return replace(foot, force=force)
 
 
-def swinging_foot(
-    state: PlannerState, swing: Swing, phase_rate: float, parameters: StepPlannerParameters
-) -> FootReference:
+def swinging_foot(state: PlannerState, swing: Swing, phase_rate: float) -> FootReference:
     """Reference of the swinging foot at a rate of the clock."""
     timing = state.timing
     progress = timing.swing_progress(state.elapsed)

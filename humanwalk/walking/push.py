@@ -8,6 +8,9 @@ import numpy as np
 from humanwalk.body.limbs import CHEST
 from humanwalk.quantity import ParameterError, quantity
 
+RANDOM_PUSHES = 5
+"""Stream of the seed from which random pushes are drawn."""
+
 MIN_RANDOM_INTERVAL = 0.1
 """Smallest mean time between random pushes [s]: the duration of a push."""
 
@@ -71,7 +74,7 @@ def all_pushes(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
     """The given pushes, then the random ones drawn from `seed`."""
     drawn = []
     if parameters.random_interval > 0.0:
-        random = np.random.default_rng(seed)
+        random = np.random.default_rng((seed, RANDOM_PUSHES))
         time = random.exponential(parameters.random_interval)
         while time < parameters.random_until:
             impulse, direction = random.uniform(0.0, parameters.random_impulse), random.uniform(-math.pi, math.pi)

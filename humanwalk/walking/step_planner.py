@@ -9,6 +9,7 @@ Points of the level plane are complex numbers x + iy [m]; headings are angles ab
 
 import math
 from collections.abc import Collection
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -91,7 +92,9 @@ class StepPlanner:
         state = self._phases.advance(self._feel(state, body), body, command, dcm)
         plan = self._step if state.is_stepping else self._stand
         next_state, reference = plan(state, body, command, dcm)
-        path = state.path.advanced(command, self._period)
+        # In standing a turn that is too slow for steps would add up.
+        along = replace(command, turn=0.0) if state.phase is Phase.STAND else command
+        path = state.path.advanced(along, self._period)
         return next_state._replace(path=path, zmp=reference.zmp), reference
 
     def _feel(self, state: PlannerState, body: BodyState) -> PlannerState:
@@ -191,7 +194,7 @@ class StepPlanner:
             swing = advanced_swing(state, swing, way, command, p, self._footholds, self._period)
             foothold = swing.foothold
             max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
-            other_foot = swinging_foot(state, swing, phase_rate, p)
+            other_foot = swinging_foot(state, swing, phase_rate)
 
         max_com_height += p.height.before_descent(descent_shares(state, p)[0], timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}

@@ -5,6 +5,9 @@ from dataclasses import dataclass, replace
 
 from humanwalk.quantity import ParameterError, quantity
 
+MAX_DOUBLE_SUPPORT = 0.7
+"""Largest share of double support in a step (our choice)."""
+
 MIN_WALK_RATIO = 0.05
 """Smallest walk ratio [m s]: steps of 0.2 s at 1.2 m/s (our choice)."""
 
@@ -14,7 +17,8 @@ class StepTiming:
     """Durations of the phases, and limits of the clock's rate."""
 
     step: float = quantity(0.53, "s", 0.3, 1.2)
-    """From touchdown to touchdown of the other foot in a careful step, and in all steps without a walk ratio."""
+    """From touchdown to touchdown of the other foot in a careful step, and in all steps without a walk ratio or forward
+    speed."""
 
     walk_ratio: float = quantity(0.361, "m s", 0.0, 1.0)
     """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
@@ -48,7 +52,12 @@ class StepTiming:
     """Vertical force above which a foot counts as loaded: a tenth of the weight of the body."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for a walk ratio with steps too short to swing a leg."""
+        """Raise ParameterError for steps too short to swing a leg."""
+        if self.double_support > MAX_DOUBLE_SUPPORT * self.step:
+            raise ParameterError(
+                f"double_support: {self.double_support:g} is too long for step {self.step:g}; allowed: up to "
+                f"{MAX_DOUBLE_SUPPORT * self.step:.3g} s; the rest of the step has to swing the leg"
+            )
         if 0.0 < self.walk_ratio < MIN_WALK_RATIO:
             raise ParameterError(
                 f"walk_ratio: {self.walk_ratio:g} is too small; allowed: 0, or {MIN_WALK_RATIO:g} to 1 m s; people "

@@ -15,6 +15,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import body_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body.visuals import visuals
+from humanwalk.quantity import ParameterError
 
 PROFILE = Assistance("Right", LEGS["Right"].ankle, -20.0, 0.53, 0.25, 0.10, known=True)
 
@@ -97,6 +98,14 @@ def test_the_torque_is_zero_before_it_rises_and_after_it_falls() -> None:
     assert [PROFILE.torque(phase) for phase in (0.0, 0.27, 0.64, 0.9)] == [0.0] * 4
     rising = [PROFILE.torque(phase) for phase in np.linspace(0.29, 0.53, 9)]
     assert (np.diff(rising) < 0.0).all()
+
+
+@pytest.mark.parametrize("second", [HipExoskeleton(), HipExoskeleton(peak_torque=5.0, side="Right")])
+def test_a_segment_carries_one_frame(second: HipExoskeleton) -> None:
+    with pytest.raises(ParameterError, match=r"^subject\.hip_exoskeleton\.side: RightLeg_\w+ already has a frame;"):
+        _ = Subject(devices=(HipExoskeleton(), second)).skeleton
+    left, right = HipExoskeleton(side="Left"), HipExoskeleton(side="Right")
+    assert len(Subject(devices=(left, right)).assistance) == 2
 
 
 def test_the_walkers_model_lacks_an_unknown_exoskeleton() -> None:

@@ -1,10 +1,15 @@
 """Joint map: the places of the joints in a state are those that the plant itself uses."""
 
 import numpy as np
+import pytest
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import human
-from humanwalk.body.joint_map import JointMap
+from humanwalk.body.impairments import StiffKnee
+from humanwalk.body.joint_map import MAX_PLAY, JointMap
+from humanwalk.body.limbs import LEGS
+from humanwalk.body.plant import body_plant
+from humanwalk.body.subject import Subject
 
 
 def test_it_lists_every_joint_of_the_body_in_the_model_files_order(joints: JointMap) -> None:
@@ -24,6 +29,12 @@ def test_positions_and_velocities_are_the_plants_own(plant: MultibodyPlant, join
     np.testing.assert_array_equal(joints.positions(state), q)
     np.testing.assert_array_equal(joints.positions(state[: joints.num_positions]), q)
     np.testing.assert_array_equal(joints.velocities(state), v)
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.1745, 0.3, 0.5, 0.7])
+def test_a_knee_with_the_largest_play_of_a_lock_is_locked_at_every_angle(angle: float) -> None:
+    joints = JointMap.of(body_plant(Subject(impairments=(StiffKnee(angle, 0.5 * MAX_PLAY),))))
+    assert joints.locked[joints.names.index(LEGS["Right"].knee)]
 
 
 def test_actuators_act_on_the_joints_in_the_maps_order(plant: MultibodyPlant, joints: JointMap) -> None:

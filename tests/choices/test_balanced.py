@@ -29,7 +29,8 @@ def test_nothing_but_the_ground_acts_on_it() -> None:
     simulator = Simulator(diagram)
     simulator.Initialize()
     context = plant.GetMyContextFromRoot(simulator.get_context())
-    assert not plant.get_applied_spatial_force_input_port().HasValue(context)
+    assert not plant.get_applied_spatial_force_input_port().Eval(context)
+    assert not plant.get_applied_generalized_force_input_port().HasValue(context)
 
 
 def test_who_is_to_be_pushed_has_a_source_of_pushes() -> None:

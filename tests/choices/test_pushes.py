@@ -1,5 +1,6 @@
 """Pushes act with every controller."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from pydrake.systems.analysis import Simulator
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario, parse_scenario
+from humanwalk.walking.push import Push
 
 PUSH = {"pushes.given": "[{time: 0.02, duration: 0.05, impulse: 10.0, direction: 1.5707963}]"}
 
@@ -29,6 +31,18 @@ def momentum_along_y(scenario: str, overrides: dict[str, str]) -> float:
 )
 def test_a_push_gives_the_body_momentum_whatever_the_controller(scenario: Any, overrides: Any) -> None:
     gained = momentum_along_y(scenario, overrides | PUSH) - momentum_along_y(scenario, overrides)
+    assert gained == pytest.approx(10.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("overrides", [{}, PUSH])
+def test_a_walker_can_be_pushed_after_it_was_made(overrides: dict[str, str]) -> None:
+    walker = make_walker(load_scenario("stand", {"start.pelvis_lift": "0.3"} | overrides))
+    context = walker.CreateDefaultContext()
+    pushes = walker.GetSubsystemByName("pushes")
+    pushes.set_pushes(pushes.GetMyMutableContextFromRoot(context), [Push(0.02, 0.05, 10.0, math.pi / 2)])
+    simulator = Simulator(walker, context)
+    simulator.AdvanceTo(0.08)
+    gained = 70.0 * walker.GetOutputPort("com").Eval(context)[4] - momentum_along_y("stand", {})
     assert gained == pytest.approx(10.0, rel=1e-3)
 
 

@@ -12,7 +12,7 @@ from pydrake.systems.framework import DiagramBuilder
 from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS, PELVIS
-from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.plant import body_plant, kinematics_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.choices import ThesisController, start
 from humanwalk.choices.start import StartParameters
@@ -95,6 +95,26 @@ def test_the_body_starts_at_rest_unless_rates_are_noisy(joints: JointMap) -> Non
     assert np.std(rates[:, joints.v]) == pytest.approx(0.1, rel=0.1)
 
 
+@pytest.mark.parametrize("joint", ["elbow: {upper: 0.2}", "elbow: {lower: 1.0}", "shoulder_flexion: {lower: 0.3}"])
+def test_an_impaired_joint_starts_as_near_to_the_posture_as_it_reaches(joint: str) -> None:
+    name, limits = joint.split(": ", 1)
+    impairment = f"[{{joint: {{joint: {name}, side: Right, {limits.strip('{}')}}}}}]"
+    healthy, impaired = (load_scenario("walk", {"subject.impairments": text}) for text in ("[]", impairment))
+    joints = JointMap.of(body_plant(impaired.subject))
+    posture, start = (joints.positions(start_positions(scenario)) for scenario in (healthy, impaired))
+    np.testing.assert_allclose(start, np.clip(posture, joints.lower, joints.upper), atol=1e-12)
+    assert np.abs(start - posture).max() > 0.1
+
+
+def test_a_start_beyond_a_range_that_the_walker_does_not_know_is_refused() -> None:
+    overrides = {
+        "subject.impairments": "[{stiff_knee: {known: false}}]",
+        "start.joint_angles": f"{{{LEGS['Right'].knee}: 0.6}}",
+    }
+    with pytest.raises(ParameterError, match=r"0\.6 is beyond the joint's range"):
+        start_positions(load_scenario("walk", overrides))
+
+
 def test_noise_of_rates_gains_and_angles_is_independent(joints: JointMap) -> None:
     noise = StartParameters(joint_noise=1e-3, rate_noise=1e-3, gain_noise=1e-3)
     calm, noisy = Scenario(seed=5), Scenario(seed=5, start=noise)
@@ -152,6 +172,13 @@ def test_offset_is_refused_below_the_least_and_named_with_a_mend(step_length: fl
     }
     with pytest.raises(ParameterError, match=rf"allowed: from {least:.4f} m on"):
         require_thesis_reachable(load_scenario("thesis", overrides))
+
+
+@pytest.mark.parametrize("side", ["Right", "Left"])
+def test_both_legs_have_to_reach(side: str) -> None:
+    impairment = f"[{{joint: {{joint: ankle, side: {side}, upper: 0.45}}}}]"
+    with pytest.raises(ParameterError, match=rf"{side}\w+ at the end of its range"):
+        require_thesis_reachable(load_scenario("thesis", {"subject.impairments": impairment}))
 
 
 def test_taller_body_reaches_with_an_offset_that_the_reference_needs_too() -> None:

@@ -513,6 +513,20 @@ def test_a_locked_knee_does_not_move_and_its_muscles_rest() -> None:
     assert abs(solution.torque[qp.names.index(LEGS["Left"].knee)]) > 1.0
 
 
+@pytest.mark.parametrize("angle", [0.02, 0.0995, 0.1745, 0.3])
+@pytest.mark.parametrize("play", [0.0101, 0.03, 0.2])
+def test_a_stiff_knee_has_a_range_in_the_program_whatever_its_play(angle: float, play: float) -> None:
+    """The margin of a straight knee does not shorten the range of a knee that is bent."""
+    dynamics, qp = impaired(Subject(impairments=(StiffKnee(angle, play),)))
+    body = body_at(dynamics, 0.5 * angle)
+    knee, i = qp.names.index(LEGS["Right"].knee), dynamics.joints.names.index(LEGS["Right"].knee)
+    low = PARAMETERS.joint_limit_stiffness * (min(max(angle - play, PARAMETERS.knee_margin), angle + play) - angle)
+    assert dynamics.joints.upper[i] > angle
+    solution = qp.solve(body, reference_for(body), rest(qp))
+    assert solution is not None
+    assert solution.acceleration[6 + knee] >= low - 0.1
+
+
 @pytest.mark.parametrize("strength", [0.5, 0.1])
 def test_weak_muscles_deliver_no_more_than_their_strength(strength: float) -> None:
     dynamics, qp = impaired(Subject(impairments=(WeakPlantarflexors(strength),)))

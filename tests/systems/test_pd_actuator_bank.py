@@ -23,6 +23,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
 
 N = 42
+NO_LIMITS = np.full(N, np.inf)
 seeds = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 
 
@@ -253,7 +254,7 @@ def test_the_torque_output_is_the_one_that_acted_in_the_last_step(gains: tuple[A
     _, bare = floating_human(h, None)
     builder, plant = floating_human(h, gains, law=law)
     joints = JointMap.of(plant)
-    bank = builder.AddSystem(PdActuatorBank(plant, *gains, law))
+    bank = builder.AddSystem(PdActuatorBank(plant, *gains, law, NO_LIMITS))
     # A jolt: away from the posture at once, by less than a limit stops.
     desired = builder.AddSystem(ConstantVectorSource(np.concatenate((np.full(N, 1e-4), np.zeros(N)))))
     builder.Connect(desired.get_output_port(), bank.GetInputPort("desired_state"))
@@ -364,9 +365,9 @@ def perturbed_run(
         add_human(stand_in, Subject())
         remove_limits(stand_in)
         stand_in.Finalize()
-        bank = builder.AddSystem(PdActuatorBank(stand_in, *gains, law=law))
+        bank = builder.AddSystem(PdActuatorBank(stand_in, *gains, law, NO_LIMITS))
     else:
-        bank = builder.AddSystem(PdActuatorBank(plant, *gains, law=law))
+        bank = builder.AddSystem(PdActuatorBank(plant, *gains, law, NO_LIMITS))
     desired = builder.AddSystem(ConstantVectorSource(np.zeros(2 * N)))
     builder.Connect(desired.get_output_port(), bank.GetInputPort("desired_state"))
     builder.Connect(plant.get_state_output_port(), bank.GetInputPort("state"))
@@ -381,6 +382,12 @@ def perturbed_run(
     plant.SetPositions(context, q)
     simulator.AdvanceTo(steps * time_step)
     return np.abs(plant.GetPositions(context)[joints.q]).max()
+
+
+def test_a_law_that_replaces_the_plants_limits_has_to_be_given_them(gains: tuple[Array, Array]) -> None:
+    _, plant = floating_human(0.001, gains, law="semi_implicit")
+    with pytest.raises(ValueError, match=r"^effort_limits: None; allowed: \(n,\), as the law semi_implicit"):
+        PdActuatorBank(plant, *gains, "semi_implicit")
 
 
 def named_step(kp: Array, kd: Array) -> float:

@@ -83,3 +83,13 @@ def test_random_pushes_follow_from_the_seed() -> None:
     assert pushes != all_pushes(parameters, seed=4)
     assert pushes
     assert all(push.impulse <= 15.0 and push.time < 30.0 for push in pushes)
+
+
+def test_random_pushes_do_not_depend_on_the_noise_of_the_start() -> None:
+    """The noise of the first joint's angle is the first normal number of the seed."""
+    parameters = PushParameters(random_interval=2.0)
+    seeds = range(1000)
+    first = [all_pushes(parameters, seed)[0] for seed in seeds]
+    noise = np.abs([np.random.default_rng(seed).standard_normal(2) for seed in seeds]).T
+    correlations = np.corrcoef([*noise, [push.time for push in first], [push.impulse for push in first]])
+    assert np.abs(correlations[:2, 2:]).max() < 0.08

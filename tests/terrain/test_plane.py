@@ -15,7 +15,6 @@ from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, check
 from humanwalk.terrain import TERRAINS, Plane
 from humanwalk.terrain.face import surface_axes
-from humanwalk.terrain.terrain import height_at
 
 SLOPES = st.floats(-0.5, 0.5)
 COORDINATES = st.floats(-50.0, 50.0)
@@ -61,7 +60,6 @@ def test_many_points_have_the_values_of_each(plane: Plane, xy: Array) -> None:
     assert (plane.height(many).shape, plane.friction(many).shape) == ((3, 1), (3, 1))
     assert plane.axes(many).shape == (3, 1, 3, 3)
     np.testing.assert_allclose(plane.height(many)[1, 0], plane.height(-xy))
-    assert height_at(plane, complex(*xy)) == pytest.approx(float(plane.height(xy)))
 
 
 @given(slope=SLOPES)

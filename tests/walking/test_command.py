@@ -1,6 +1,8 @@
 """The command as data: tested ranges."""
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from humanwalk.scenario import load_scenario, shipped_scenarios
 from humanwalk.walking.command import CommandParameters, CommandPoint
@@ -32,3 +34,13 @@ def test_a_speed_beyond_the_tested_range_is_named_with_the_range(point: CommandP
 def test_the_greatest_speed_of_a_backward_walk_is_negative() -> None:
     assert CommandParameters(points=(CommandPoint(forward=-0.5),)).greatest_forward == -0.5
     assert CommandParameters(points=()).greatest_forward == 0.0
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=4), st.floats(0.1, 2.0))
+def test_another_greatest_speed_changes_all_speeds_in_proportion(speeds: list[float], speed: float) -> None:
+    """A backward walk stays one."""
+    assume(max(map(abs, speeds)) > 1e-3)
+    points = tuple(CommandPoint(time, forward) for time, forward in enumerate(speeds))
+    changed = [point.forward for point in CommandParameters(points=points).points_at_speed(speed)]
+    assert max(map(abs, changed)) == pytest.approx(speed)
+    assert changed == pytest.approx([forward * speed / max(map(abs, speeds)) for forward in speeds])

@@ -176,7 +176,7 @@ def test_each_foot_leaves_the_ground_as_its_own_swing_requires(side: int) -> Non
 @given(st.floats(-0.2, 0.2))
 def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground: float) -> None:
     foothold = Foothold(NEXT.position, ground)
-    end = swinging_foot(state_at(TIMING.step), swing_to(foothold), 1.0, PARAMETERS)
+    end = swinging_foot(state_at(TIMING.step), swing_to(foothold), 1.0)
     assert end.height.value == pytest.approx(ground + ANKLE - PARAMETERS.swing.landing_depth)
     assert end.pitch.value == pytest.approx(-0.25)
     assert end.toes == pytest.approx((0.0, 0.0), abs=1e-9)
@@ -186,7 +186,7 @@ def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground: float) ->
 def test_rates_of_the_swinging_foot_are_derivatives_also_on_a_faster_clock(progress: float, rate: float) -> None:
     elapsed, h = TIMING.double_support + progress * TIMING.single_support, 1e-6
     swing = swing_to(Foothold(NEXT.position, 0.1))
-    before, here, after = (swinging_foot(state_at(elapsed + rate * d), swing, rate, PARAMETERS) for d in (-h, 0.0, h))
+    before, here, after = (swinging_foot(state_at(elapsed + rate * d), swing, rate) for d in (-h, 0.0, h))
     for name in ("height", "pitch"):
         change = getattr(after, name).value - getattr(before, name).value
         assert change / (2.0 * h) == pytest.approx(getattr(here, name).rate, abs=1e-3)

@@ -162,6 +162,14 @@ def test_a_turn_turns_the_feet_and_the_walk() -> None:
     assert cmath.phase(body.com_velocity) == pytest.approx(state.heading, abs=0.6)
 
 
+@pytest.mark.parametrize("wait", [2.0, 8.0])
+def test_a_turn_too_slow_for_steps_does_not_turn_the_path_of_a_standing_walker(wait: float) -> None:
+    command = lambda time: Command(0.5 if time > wait else 0.0, 0.0, 0.04 if time < wait else 0.0)  # noqa: E731
+    *_, (_, state, _, _) = pendulum_walk(planner(), command, wait + 4.0)
+    assert state.is_stepping
+    assert state.heading == 0.0
+
+
 def test_it_stays_on_the_path_around_a_corner() -> None:
     command = lambda time: Command(0.4, 0.0, 0.4 if 3.0 < time < 6.9 else 0.0) if time > 0.2 else Command()  # noqa: E731
     for _, state, _, _ in pendulum_walk(planner(), command, 10.0):

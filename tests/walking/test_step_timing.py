@@ -45,6 +45,12 @@ def test_a_walk_ratio_is_length_times_duration_up_to_the_longest_step(speed: flo
     assert timing.double_support / timing.step == pytest.approx(TIMING.double_support / TIMING.step)
 
 
+def test_a_step_without_time_to_swing_the_leg_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"^double_support: 0\.4 is too long for step 0\.5; allowed: up to 0\.35"):
+        StepTiming(step=0.5, double_support=0.4)
+    assert StepTiming(step=0.5, double_support=0.35).single_support > 0.0
+
+
 def test_a_walk_ratio_with_steps_too_short_for_a_swing_is_refused() -> None:
     with pytest.raises(ParameterError, match=r"walk_ratio: 0\.01 is too small; allowed: 0, or 0\.05 to 1 m s"):
         StepTiming(walk_ratio=0.01)
