@@ -93,8 +93,8 @@ def test_the_block_diagram_of_every_scenario_is_in_the_book(name: str) -> None:
     assert sorted(re.findall(r"name=(\w+)", drawn)) == sorted(re.findall(r"name=(\w+)", graph)), (
         "run docs/make_gallery.py"
     )
-    # Pushes add the wire of their forces, the implicit law that of the desired state.
-    more = bool(scenario.pushes.given) + (scenario.actuation == PdActuation(law="implicit"))
+    # The implicit law adds the wire of the desired state.
+    more = scenario.actuation == PdActuation(law="implicit")
     assert drawn.count('class="edge"') == graph.count(" -> ") - more
 
 

@@ -30,18 +30,20 @@ def joint_power(signals: pa.Table) -> Array:
     return torque * matrix(signals, [f"{name}.velocity_rad_s" for name in names])
 
 
-def cost_of_transport(signals: pa.Table, rows: Mask, mass: float) -> float | None:
+def cost_of_transport(signals: pa.Table, rows: Mask, mass: float, distance: float) -> float | None:
     """Mechanical cost of transport: time integral of sum |torque x rate| over m g d, without recovery of negative work.
 
-    Only the chosen rows of the record count; the mass is the body's [kg].
+    Args:
+        signals: the record.
+        rows: rows of the record that count.
+        mass: of the body [kg].
+        distance: that the walk covers in these rows [m]; None is returned if it is not positive.
     """
-    if rows.sum() < 2:
+    if rows.sum() < 2 or distance <= 0.0:
         return None
     time = signals[TIME].to_numpy()[rows]
-    x = signals["com.x_m"].to_numpy()[rows]
     power = np.abs(joint_power(signals)[rows]).sum(axis=1)
-    distance = x[-1] - x[0]
-    return float(np.trapezoid(power, time) / (mass * GRAVITY * distance)) if distance > 0 else None
+    return float(np.trapezoid(power, time) / (mass * GRAVITY * distance))
 
 
 def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] | None:

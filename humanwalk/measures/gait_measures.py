@@ -1,7 +1,8 @@
 """Spatiotemporal measures of gait from the events of the feet (`humanwalk.measures.events`).
 
 A stride of a foot lasts from a touchdown to its next one. A step ends with a touchdown of the foot and begins with the
-last touchdown of the other foot. A stance lasts from touchdown to toe-off. Lengths are along x, the walking direction.
+last touchdown of the other foot. A stance lasts from touchdown to toe-off. Lengths are along the heading of the
+commanded path beside the walker (`humanwalk.measures.path`), widths to its left.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,6 +15,7 @@ from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
 from humanwalk.measures.effort import JointWork, joint_work
 from humanwalk.measures.events import FootEvents, events_of
+from humanwalk.measures.path import horizontal
 from humanwalk.numerics import Array
 
 
@@ -32,7 +34,7 @@ class Strides(TypedDict):
 
 
 class CopExcursion(TypedDict):
-    """Range of the center of pressure along each axis."""
+    """Range of the center of pressure along the heading, x, and to its left, y."""
 
     x: OfFeet
     y: OfFeet
@@ -55,23 +57,29 @@ class GaitMeasures(TypedDict):
     joint_work_J: dict[str, JointWork] | None
 
 
-def gait_measures(signals: pa.Table, begin: float) -> GaitMeasures:
-    """All gait measures of a record from a time [s] on."""
+def gait_measures(signals: pa.Table, begin: float, facing: Array) -> GaitMeasures:
+    """All gait measures of a record.
+
+    Args:
+        signals: the record.
+        begin: time from which it counts [s].
+        facing: heading at every row, see `Directions`.
+    """
     feet = {side: events_of(signals, side, begin) for side in SIDES}
     return {
         "strides": {"right": len(feet["Right"].strides), "left": len(feet["Left"].strides)},
         "stride_time_s": _means(lambda side: stride_times(feet[side])),
-        "stride_length_m": _means(lambda side: stride_lengths(signals, side, feet[side])),
+        "stride_length_m": _means(lambda side: stride_lengths(signals, side, feet[side], facing)),
         "step_time_s": _means(lambda side: step_times(feet[side], feet[other_side(side)])),
-        "step_length_m": _means(lambda side: step_lengths(signals, side, feet[side])),
-        "step_width_m": _means(lambda side: step_widths(signals, side, feet[side])),
+        "step_length_m": _means(lambda side: step_lengths(signals, side, feet[side], facing)),
+        "step_width_m": _means(lambda side: step_widths(signals, side, feet[side], facing)),
         "stance_share": _means(lambda side: stance_shares(feet[side])),
         "double_support_share": _means(lambda side: double_support_shares(feet[side], feet[other_side(side)])),
         "cadence_1_min": cadence(feet),
-        "stride_speed_m_s": stride_speed(signals, feet),
+        "stride_speed_m_s": stride_speed(signals, feet, facing),
         "cop_excursion_m": {
-            "x": _means(lambda side: cop_excursions(signals, side, feet[side], "x")),
-            "y": _means(lambda side: cop_excursions(signals, side, feet[side], "y")),
+            "x": _means(lambda side: cop_excursions(signals, side, feet[side], facing).real),
+            "y": _means(lambda side: cop_excursions(signals, side, feet[side], facing).imag),
         },
         "joint_work_J": joint_work(signals, feet["Right"].touchdowns),
     }
@@ -82,9 +90,11 @@ def stride_times(foot: FootEvents) -> Array:
     return np.diff(foot.touchdown_times)
 
 
-def stride_lengths(signals: pa.Table, side: Side, foot: FootEvents) -> Array:
-    """Advance of the sole from touchdown to touchdown [m]."""
-    return np.diff(_sole(signals, side, "x")[foot.touchdowns])
+def stride_lengths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
+    """Advance of the sole from touchdown to touchdown, along the mean heading of both [m]."""
+    strides, at = np.diff(_sole(signals, side)[foot.touchdowns]), facing[foot.touchdowns]
+    mean = at[:-1] + at[1:]
+    return _relative(strides, mean / np.abs(mean)).real
 
 
 def step_times(foot: FootEvents, other: FootEvents) -> Array:
@@ -93,15 +103,15 @@ def step_times(foot: FootEvents, other: FootEvents) -> Array:
     return (foot.touchdown_times - other.touchdown_times[before - 1])[before > 0] if before.any() else np.empty(0)
 
 
-def step_lengths(signals: pa.Table, side: Side, foot: FootEvents) -> Array:
+def step_lengths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
     """How far this sole is in front of the other one at its touchdown [m]."""
-    return (_sole(signals, side, "x") - _sole(signals, other_side(side), "x"))[foot.touchdowns]
+    return _steps(signals, side, foot, facing).real
 
 
-def step_widths(signals: pa.Table, side: Side, foot: FootEvents) -> Array:
+def step_widths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
     """How far the soles are apart sideways at this foot's touchdown [m]; negative if they are crossed."""
     outward = 1.0 if side == "Left" else -1.0
-    return outward * (_sole(signals, side, "y") - _sole(signals, other_side(side), "y"))[foot.touchdowns]
+    return outward * _steps(signals, side, foot, facing).imag
 
 
 def stance_shares(foot: FootEvents) -> Array:
@@ -121,24 +131,35 @@ def cadence(feet: Mapping[Side, FootEvents]) -> float | None:
     return float(60.0 * (times.size - 1) / np.ptp(times)) if times.size > 1 else None
 
 
-def stride_speed(signals: pa.Table, feet: dict[Side, FootEvents]) -> float | None:
+def stride_speed(signals: pa.Table, feet: dict[Side, FootEvents], facing: Array) -> float | None:
     """Length of all strides by their time [m/s]."""
-    length = sum(stride_lengths(signals, side, foot).sum() for side, foot in feet.items())
+    length = sum(stride_lengths(signals, side, foot, facing).sum() for side, foot in feet.items())
     time = sum(stride_times(foot).sum() for foot in feet.values())
     return float(length / time) if time > 0 else None
 
 
-def cop_excursions(signals: pa.Table, side: Side, foot: FootEvents, axis: str) -> Array:
-    """Range of the center of pressure under the foot in every whole stance, along x or y [m]."""
-    cop = signals[f"{side.lower()}_foot.cop_{axis}_m"].to_numpy()
+def cop_excursions(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
+    """Range of the center of pressure under the foot in every whole stance [m]: along the heading + i to its left."""
+    cop = signals[f"{side.lower()}_foot.cop_x_m"].to_numpy() + 1j * signals[f"{side.lower()}_foot.cop_y_m"].to_numpy()
     loaded = signals[f"{side.lower()}_foot.loaded"].to_numpy() > 0.5
-    stances = [cop[a:b][loaded[a:b]] for a, b in foot.stances]
-    return np.array([np.ptp(stance) for stance in stances if stance.size])
+    stances = [_relative(cop[a:b][loaded[a:b]], facing[a]) for a, b in foot.stances]
+    return np.array([complex(np.ptp(stance.real), np.ptp(stance.imag)) for stance in stances if stance.size])
 
 
-def _sole(signals: pa.Table, side: Side, axis: str) -> Array:
-    place: Array = signals[f"{side.lower()}_sole.{axis}_m"].to_numpy()
-    return place
+def _steps(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
+    """Place of this sole relative to the other one at its touchdown [m]."""
+    apart = _sole(signals, side) - _sole(signals, other_side(side))
+    return _relative(apart[foot.touchdowns], facing[foot.touchdowns])
+
+
+def _sole(signals: pa.Table, side: Side) -> Array:
+    return horizontal(signals, f"{side.lower()}_sole")
+
+
+def _relative(vectors: Array, directions: Array | complex) -> Array:
+    """Vectors of the level plane relative to directions of length 1: along + i left."""
+    relative: Array = vectors * np.conj(directions)
+    return relative
 
 
 def of_feet(value: Callable[[Side], float | None]) -> OfFeet:

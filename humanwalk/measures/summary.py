@@ -13,7 +13,7 @@ from humanwalk.measures.effort import cost_of_transport, joint_names
 from humanwalk.measures.events import events_of
 from humanwalk.measures.fall import FallReport, report_fall
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
-from humanwalk.measures.path import path_deviation
+from humanwalk.measures.path import distance_along, path_deviation, path_directions
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import printable
@@ -34,7 +34,7 @@ class Summary(TypedDict):
     distance_m: float
     mean_speed_m_s: float | None
     commanded_speed_m_s: float | None
-    lateral_drift_m: float
+    lateral_drift_m: float | None
     path_deviation_m: float | None
     foot_lift_m: OfFeet
     foot_line_error_m: OfFeet
@@ -62,9 +62,10 @@ class Summary(TypedDict):
 def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float, name: str) -> Summary:
     """Measure a run.
 
-    Speed, path deviation, support, tracking and cost are those of the steady walk: from `Controller.steady_from` to
-    the end. They are null for a run that ended before, as is every number that is not finite. Without physics there
-    are no forces: steps, lift, torques and cost are null or empty.
+    Distances are along the commanded path, the speed is along its heading. Speed, path deviation, support, tracking and
+    cost are those of the steady walk: from `Controller.steady_from` to the end. They are null for a run that ended before, as is every number that is not finite. Without physics there
+    are no forces: steps, lift, torques and cost are null or empty. Lateral drift and line errors are those of walks
+    along x.
 
     Args:
         scenario: what was simulated.
@@ -79,9 +80,12 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     steady = time >= steady_from
     joints = joint_names(signals)
     com = matrix(signals, ["com.x_m", "com.y_m"])
+    directions = path_directions(signals, controller.command)
+    every, is_along_x = np.ones_like(steady), not directions.travel.imag.any()
     forces, torques = (
         [f"support.{what}_{axis}{unit}" for axis in "xyz"] for what, unit in (("force", "_N"), ("torque", "_N_m"))
     )
+    cost = cost_of_transport(signals, steady, scenario.subject.mass, distance_along(signals, steady, directions.travel))
     supported = forces[0] in signals.column_names
     summary: Summary = {
         "scenario": printable(name),
@@ -92,13 +96,13 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "duration_s": float(time[-1]),
         "fall": report_fall(signals, scenario.subject.mass) if end == "fell" else None,
         "steady_from_s": steady_from,
-        "distance_m": float(com[-1, 0] - com[0, 0]),
-        "mean_speed_m_s": _slope(time[steady], com[steady, 0]),
+        "distance_m": distance_along(signals, every, directions.travel),
+        "mean_speed_m_s": _rate(time[steady], distance_along(signals, steady, directions.facing)),
         "commanded_speed_m_s": controller.commanded_speed,
-        "lateral_drift_m": float(com[-1, 1] - com[0, 1]),
+        "lateral_drift_m": float(com[-1, 1] - com[0, 1]) if is_along_x else None,
         "path_deviation_m": path_deviation(signals, steady, controller.command),
         "foot_lift_m": of_feet(lambda side: foot_lift(signals, side) if physics else None),
-        "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side)),
+        "foot_line_error_m": of_feet(lambda side: foot_line_error(signals, side) if is_along_x else None),
         "steps": sum(events_of(signals, side).touchdowns.size for side in SIDES) if physics else None,
         "external_support": supported,
         "style": controller.followed_style,
@@ -112,12 +116,12 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "tracking_error_rad": {name: _rms(tracking_errors(signals, [name]), steady) for name in joints},
         "ik_converged_share": ik_converged_share(signals),
         "qp_failures": qp_failures(signals),
-        "cost_of_transport": cost_of_transport(signals, steady, scenario.subject.mass) if physics else None,
+        "cost_of_transport": cost if physics else None,
         "wall_time_s": wall_time,
         "realtime_factor": float(time[-1]) / wall_time,
         "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
         "seed": scenario.seed,
-        "gait": gait_measures(signals, steady_from) if physics else None,
+        "gait": gait_measures(signals, steady_from, directions.facing) if physics else None,
     }
     finite: Summary = _finite(summary)
     return finite
@@ -182,8 +186,8 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _slope(time: Array, x: Array) -> float | None:
-    return float((x[-1] - x[0]) / (time[-1] - time[0])) if time.size > 1 else None
+def _rate(time: Array, distance: float) -> float | None:
+    return distance / float(time[-1] - time[0]) if time.size > 1 else None
 
 
 def _rms(values: Array, rows: Mask) -> float | None:

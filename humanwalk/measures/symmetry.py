@@ -74,8 +74,8 @@ def _peak_force(walk: Walk, side: Side, foot: FootEvents) -> Array:
 
 MEASURES_OF_LEGS: dict[str, tuple[str, OfFoot]] = {
     "step time": ("s", lambda walk, side, foot: step_times(foot, walk.feet[other_side(side)])),
-    "step length": ("m", lambda walk, side, foot: step_lengths(walk.signals, side, foot)),
-    "step width": ("m", lambda walk, side, foot: step_widths(walk.signals, side, foot)),
+    "step length": ("m", lambda walk, side, foot: step_lengths(walk.signals, side, foot, walk.facing)),
+    "step width": ("m", lambda walk, side, foot: step_widths(walk.signals, side, foot, walk.facing)),
     "stance, share of the stride": ("", lambda walk, side, foot: stance_shares(foot)),
     "peak vertical force": ("BW", _peak_force),
     **{f"{joint} range of motion": ("deg", _range_of(joint)) for joint in JOINTS},

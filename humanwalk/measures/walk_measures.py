@@ -29,6 +29,7 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
+from humanwalk.measures.path import Directions, distance_along, path_directions
 from humanwalk.measures.signals import TIME, UNITS
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -114,9 +115,19 @@ class Walk:
         return self.scenario.subject.mass
 
     @cached_property
+    def directions(self) -> Directions:
+        """Directions of the commanded path at every row."""
+        return path_directions(self.signals, self.scenario.controller.command)
+
+    @property
+    def facing(self) -> Array:
+        """Heading of the commanded path at every row, see `Directions`."""
+        return self.directions.facing
+
+    @cached_property
     def speeds(self) -> Array:
         """Speed of every stride [m/s]."""
-        return self.each(lambda side, foot: stride_lengths(self.signals, side, foot) / stride_times(foot))
+        return self.each(lambda side, foot: stride_lengths(self.signals, side, foot, self.facing) / stride_times(foot))
 
     @cached_property
     def pace(self) -> Pace:
@@ -262,7 +273,9 @@ def _cadence(walk: Walk) -> Array:
 
 
 def _cost(walk: Walk) -> Array:
-    cost = cost_of_transport(walk.signals, walk.signals[TIME].to_numpy() >= walk.begin, walk.mass)
+    steady = walk.signals[TIME].to_numpy() >= walk.begin
+    distance = distance_along(walk.signals, steady, walk.directions.travel)
+    cost = cost_of_transport(walk.signals, steady, walk.mass, distance)
     return np.array([cost], dtype=float)
 
 
@@ -301,7 +314,7 @@ MEASURES: tuple[MeasureKind, ...] = (
     MeasureKind(
         "step length",
         "m",
-        lambda walk: walk.each(lambda side, foot: step_lengths(walk.signals, side, foot)),
+        lambda walk: walk.each(lambda side, foot: step_lengths(walk.signals, side, foot, walk.facing)),
         lambda pace: people_steps(pace)[0],
     ),
     MeasureKind("cadence", "1/min", _cadence, lambda pace: people_steps(pace)[1]),
@@ -320,7 +333,7 @@ MEASURES: tuple[MeasureKind, ...] = (
     MeasureKind(
         "step width",
         "m",
-        lambda walk: walk.each(lambda side, foot: step_widths(walk.signals, side, foot)),
+        lambda walk: walk.each(lambda side, foot: step_widths(walk.signals, side, foot, walk.facing)),
         people_step_width,
     ),
     _com_range("vertical", "z"),

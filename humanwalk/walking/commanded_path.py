@@ -14,6 +14,9 @@ from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
 from humanwalk.walking.command import Command
 
+SAME_DISTANCE = 1e-9
+"""Difference of distances that comes from rounding [m]."""
+
 STORED_PLACES = 40
 """Number of stored places: the last two meters of the reference body."""
 
@@ -78,19 +81,22 @@ class CommandedPath:
         return replace(self, places=(*stored, end))
 
     def nearest(self, position: complex, command: Command) -> Place:
-        """The place of the path that is nearest to a position; beyond its end, the path continues along the command."""
+        """The place of the path that is nearest to a position; beyond its end, the path continues along the command.
+
+        It is the first one from the end on: a path that turns back passes near its earlier places again.
+        """
         speed = abs(command.velocity)
         if speed < self.min_speed:
             return self.end
         direction = command.velocity / speed * cmath.exp(1j * self.end.heading)
         ahead = ((position - self.end.position) / direction).real
         nearest = self.end.advanced(command, max(ahead, 0.0) / speed)
-        for a, b in pairwise(self.places):
-            line = b.position - a.position
-            fraction = clip(((position - a.position) / line).real, 0.0, 1.0) if line else 0.0
-            place = a.interpolated(b, fraction)
-            if abs(place.position - position) < abs(nearest.position - position):
-                nearest = place
+        distance = abs(nearest.position - position)
+        for a, b in pairwise(reversed(self.places)):
+            place = _nearest_between(b, a, position)
+            if abs(place.position - position) > distance + SAME_DISTANCE:
+                break
+            nearest, distance = place, abs(place.position - position)
         return nearest
 
     def shifted(self, displacement: complex) -> CommandedPath:
@@ -155,6 +161,12 @@ class PathFollowing:
             return path
         lead = path.end.position - nearest.position
         return path.shifted(_limited(lead, self.pace_speed_limit / self.pace_gain) - lead)
+
+
+def _nearest_between(a: Place, b: Place, position: complex) -> Place:
+    """The place on the line from one place to the next that is nearest to a position."""
+    line = b.position - a.position
+    return a.interpolated(b, clip(((position - a.position) / line).real, 0.0, 1.0) if line else 0.0)
 
 
 def _limited(vector: complex, limit: float) -> complex:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.measures.path import SPACING, commanded_path, path_deviation
+from humanwalk.measures.path import SPACING, commanded_path, distance_along, path_deviation, path_directions
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.scenario import load_scenario
@@ -87,3 +87,49 @@ def test_a_walk_without_command_has_none(name: str) -> None:
     command = load_scenario(name).controller.command
     assert command is None
     assert path_deviation(record(lambda t: t + 0j), TIMES >= 0.0, command) is None
+
+
+EVERY = np.ones_like(TIMES, dtype=bool)
+
+
+@pytest.mark.parametrize("command", [AHEAD, None, CommandParameters(points=())])
+def test_a_straight_walk_faces_along_x_to_the_last_bit(command: CommandParameters | None) -> None:
+    directions = path_directions(record(lambda t: t + 0.1j * np.sin(t)), command)
+    assert (directions.facing == 1.0).all()
+    assert directions.travel == pytest.approx(1.0, abs=1e-12)
+    assert not directions.travel.imag.any()
+
+
+@given(lag=st.floats(0.0, 1.0), aside=st.floats(-0.1, 0.1))
+def test_on_a_circle_the_walker_faces_along_the_tangent_beside_it(lag: float, aside: float) -> None:
+    """The second and the third lap pass the places of the first one."""
+    twice = CommandParameters((CommandPoint(time=0.0, forward=0.6, turn=0.8),), acceleration=1e3, turn_acceleration=1e3)
+
+    def position(time: Array) -> Any:
+        return 0.75j - (0.75 - aside) * 1j * np.exp(0.8j * np.maximum(time - lag, 0.0))
+
+    directions = path_directions(record(lambda t: np.where(t == 0.0, 0.0, position(t))), twice)
+    late = TIMES > 1.5
+    expected = np.exp(0.8j * (TIMES - lag))
+    assert np.abs(directions.facing - expected)[late].max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("point", "velocity"),
+    [
+        (CommandPoint(time=0.0, forward=0.5), 0.5 + 0j),
+        (CommandPoint(time=0.0, forward=-0.4), -0.4 + 0j),
+        (CommandPoint(time=0.0, sideways=0.3), 0.3j),
+    ],
+)
+def test_distances_are_along_the_motion_and_speeds_along_the_heading(point: CommandPoint, velocity: complex) -> None:
+    signals = record(lambda t: velocity * t)
+    directions = path_directions(signals, CommandParameters((point,), acceleration=5.0))
+    assert distance_along(signals, EVERY, directions.travel) == pytest.approx(20.0 * abs(velocity))
+    assert distance_along(signals, EVERY, directions.facing) == pytest.approx(20.0 * velocity.real)
+
+
+def test_the_distance_along_a_circle_is_its_arc() -> None:
+    signals = record(lambda t: 1j * RADIUS - 1j * RADIUS * np.exp(0.2j * t))
+    directions = path_directions(signals, CIRCLE)
+    assert distance_along(signals, EVERY, directions.travel) == pytest.approx(12.0, rel=2e-3)

@@ -265,13 +265,13 @@ def test_cost_of_transport_of_a_known_power(columns: tuple[str, ...], joints: Jo
     )
     every = np.ones(signals.num_rows, dtype=bool)
     expected = 70.0 / (MASS * GRAVITY * SPEED)
-    assert cost_of_transport(signals, every, MASS) == pytest.approx(expected)
-    half = signals[TIME].to_numpy() > 2.0
-    assert cost_of_transport(signals, half, MASS) == pytest.approx(expected)
+    assert cost_of_transport(signals, every, MASS, 5.0 * SPEED) == pytest.approx(expected)
+    half = signals[TIME].to_numpy() >= 2.0
+    assert cost_of_transport(signals, half, MASS, 3.0 * SPEED) == pytest.approx(expected)
     assert summary_of(signals)["cost_of_transport"] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("way", [0.0, -1.0])
-def test_cost_of_transport_of_no_way_forward_is_null(columns: tuple[str, ...], way: float) -> None:
-    signals = walk_of(columns, **{"com.x_m": lambda t: way * t})
-    assert cost_of_transport(signals, np.ones(signals.num_rows, dtype=bool), MASS) is None
+@pytest.mark.parametrize("distance", [0.0, -1.0])
+def test_cost_of_transport_of_no_way_forward_is_null(columns: tuple[str, ...], distance: float) -> None:
+    signals = walk_of(columns)
+    assert cost_of_transport(signals, np.ones(signals.num_rows, dtype=bool), MASS, distance) is None

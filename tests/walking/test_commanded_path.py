@@ -58,6 +58,26 @@ def test_before_the_corner_the_nearest_place_is_on_the_straight(lag: float) -> N
     assert nearest.turn == 0.0
 
 
+@given(st.floats(0.1, 1.8), st.floats(-0.05, 0.05))
+def test_on_the_way_back_the_nearest_place_is_on_the_way_back(back: float, aside: float) -> None:
+    """After a turn on the spot, although the way out is as near."""
+    out = walked(Command(0.6), 5.0)
+    turned = walked(Command(0.0, 0.0, math.pi / 8.0), 8.0, out)
+    returning = walked(Command(0.6), 3.3, turned)
+    nearest = returning.nearest(out.end.position - back + 1j * aside, STRAIGHT)
+    assert nearest.heading == pytest.approx(math.pi, abs=0.05)
+    assert nearest.distance == pytest.approx(3.0 + back, abs=0.02)
+
+
+@given(st.floats(0.6, 3.0))
+def test_a_walker_that_reverses_at_its_nominal_place_is_not_corrected(time: float) -> None:
+    to_the_right, to_the_left = Command(0.0, -0.3), Command(0.0, 0.3)
+    path = walked(to_the_left, time, walked(to_the_right, 6.0))
+    own = path.end.position - FOLLOWING.lag * 0.3j
+    correction = FOLLOWING.correction(path, path.nearest(own, to_the_left), own, to_the_left)
+    assert correction == pytest.approx(0.0, abs=1e-6)
+
+
 def test_on_the_spot_the_walker_turns_with_the_command() -> None:
     path = PathFollowing().begin(1.0, 0.7)
     assert path.nearest(0.5j, Command(0.0, 0.0, 0.5)) == path.end
