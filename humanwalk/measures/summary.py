@@ -63,9 +63,9 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     """Measure a run.
 
     Distances are along the commanded path, the speed is along its heading. Speed, path deviation, support, tracking and
-    cost are those of the steady walk: from `Controller.steady_from` to the end. They are null for a run that ended before, as is every number that is not finite. Without physics there
-    are no forces: steps, lift, torques and cost are null or empty. Lateral drift and line errors are those of walks
-    along x.
+    cost are those of the steady walk: from `Controller.steady_from` to the end. They are null for a run that ended
+    before, as is every number that is not finite. Without physics there are no forces: steps, lift, torques and cost
+    are null or empty. Lateral drift and line errors are those of walks along x.
 
     Args:
         scenario: what was simulated.
