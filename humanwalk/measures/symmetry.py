@@ -61,9 +61,9 @@ def _range_of(joint: str) -> OfFoot:
     return of_foot
 
 
-def _peak_of(curve: str) -> OfFoot:
+def _peak_of(curve: str, sign: float) -> OfFoot:
     def of_foot(walk: Walk, side: Side, foot: FootEvents) -> Array:
-        return np.abs(over_strides(foot, CURVES[curve].of(walk.signals, side, walk.mass))).max(axis=1)
+        return (sign * over_strides(foot, CURVES[curve].of(walk.signals, side, walk.mass))).max(axis=1)
 
     return of_foot
 
@@ -72,6 +72,15 @@ def _peak_force(walk: Walk, side: Side, foot: FootEvents) -> Array:
     return over_strides(foot, walk.forces[side]).max(axis=1)
 
 
+SENSES = (
+    ("hip", "extensor", 1.0),
+    ("hip", "flexor", -1.0),
+    ("knee", "extensor", 1.0),
+    ("knee", "flexor", -1.0),
+    ("ankle", "plantarflexor", 1.0),
+)
+"""Peaks of the moments: joint, sense and its sign in the curves of MOMENTS."""
+
 MEASURES_OF_LEGS: dict[str, tuple[str, OfFoot]] = {
     "step time": ("s", lambda walk, side, foot: step_times(foot, walk.feet[other_side(side)])),
     "step length": ("m", lambda walk, side, foot: step_lengths(walk.signals, side, foot, walk.facing)),
@@ -79,8 +88,9 @@ MEASURES_OF_LEGS: dict[str, tuple[str, OfFoot]] = {
     "stance, share of the stride": ("", lambda walk, side, foot: stance_shares(foot)),
     "peak vertical force": ("BW", _peak_force),
     **{f"{joint} range of motion": ("deg", _range_of(joint)) for joint in JOINTS},
-    **{f"{joint} peak moment": ("N m/kg", _peak_of(f"{joint} moment")) for joint in JOINTS},
-    **{f"{joint} peak power": ("W/kg", _peak_of(f"{joint} power")) for joint in JOINTS},
+    **{f"{joint} peak {sense} moment": ("N m/kg", _peak_of(f"{joint} moment", sign)) for joint, sense, sign in SENSES},
+    **{f"{joint} peak power": ("W/kg", _peak_of(f"{joint} power", 1.0)) for joint in JOINTS},
+    **{f"{joint} peak absorbed power": ("W/kg", _peak_of(f"{joint} power", -1.0)) for joint in JOINTS},
 }
 """Unit of each measure, and its values in the steps, strides or stances of a leg."""
 

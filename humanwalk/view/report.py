@@ -57,7 +57,8 @@ NOTES = (
     "Human curves: Schwartz, Rozumalski, Trost (2008), children, whose curves have the shape of adults' at the same "
     "dimensionless speed, by which their group is chosen.",
     "Hip flexion and pelvic tilt are those of the plane through the iliac spines, which tilts 11 degrees forward in "
-    "upright standing. Moments are internal: joint torques per body mass; powers are these times the joint's rate.",
+    "upright standing. Moments are internal: the actuators' torques per body mass; powers are these times the joint's "
+    "rate. Springs, dampers, locked joints and devices are not part of them.",
     "SI: symmetry index, 2 (right - left) / (right + left), of Robinson, Herzog and Nigg (1987); 0 for equal legs.",
     "CoP backward: greatest distance by which the center of pressure falls back under the foot from 10 to 55 % of the "
     "gait cycle.",

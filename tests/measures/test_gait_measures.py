@@ -77,10 +77,10 @@ def test_measures_do_not_depend_on_where_the_walk_leads(heading: float) -> None:
     facing = np.full(signals.num_rows, direction)
     found, expected = gait_measures(pa.table(turned), 0.0, facing), measured(signals, 0.0)
     for name in ("stride_length_m", "step_length_m", "step_width_m"):
-        assert found[name] == pytest.approx(expected[name]), name  # type: ignore[literal-required]
+        assert found[name] == pytest.approx(expected[name]), name
     assert found["stride_speed_m_s"] == pytest.approx(expected["stride_speed_m_s"])
     for axis in ("x", "y"):
-        assert found["cop_excursion_m"][axis] == pytest.approx(expected["cop_excursion_m"][axis], abs=1e-9)  # type: ignore[literal-required]
+        assert found["cop_excursion_m"][axis] == pytest.approx(expected["cop_excursion_m"][axis], abs=1e-9)
 
 
 @given(walks)
@@ -132,14 +132,14 @@ def test_excursion_of_the_center_of_pressure_is_per_stance() -> None:
 def test_joint_work_is_per_stride_and_split_by_sign() -> None:
     """Power 40 sin: half a wave of it is 40 / pi over a stride of one second."""
     work = measured(walk(), 0.0)["joint_work_J"]
-    assert work == {  # type: ignore[comparison-overlap]
+    assert work == {
         "knee": {"positive": pytest.approx(40 / np.pi, rel=1e-3), "negative": pytest.approx(-40 / np.pi, rel=1e-3)}
     }
 
 
 def test_joint_work_sums_to_the_change_of_energy() -> None:
     signals = walk()
-    work = measured(signals, 0.0)["joint_work_J"]["knee"]  # type: ignore[index]
+    work = measured(signals, 0.0)["joint_work_J"]["knee"]
     assert work["positive"] + work["negative"] == pytest.approx(0.0, abs=1e-3)
 
 

@@ -23,7 +23,9 @@ from humanwalk.measures.walk_measures import (
     com_excursions,
     late_stance_knee,
     people_com_excursion,
+    people_double_support,
     people_stance,
+    people_step_width,
     people_steps,
 )
 from humanwalk.numerics import Array
@@ -213,6 +215,22 @@ def test_human_steps_have_the_speed_and_the_walk_ratio(speed: float, leg: float)
     assert length.low < length.high
     assert length.low * cadence.high / 60.0 == pytest.approx(speed)
     assert length.high * cadence.low / 60.0 == pytest.approx(speed)
+
+
+@pytest.mark.parametrize("size", [0.6, 1.1])
+def test_steps_of_dynamically_similar_people_are_in_proportion(size: float) -> None:
+    pace, similar = Pace(1.2, 0.9), Pace(1.2 * size**0.5, 0.9 * size)
+    (length, cadence), (length_there, cadence_there) = people_steps(pace), people_steps(similar)
+    width, width_there = people_step_width(pace), people_step_width(similar)
+    for end in ("low", "high"):
+        assert getattr(length_there, end) == pytest.approx(size * getattr(length, end))
+        assert getattr(cadence_there, end) == pytest.approx(size**-0.5 * getattr(cadence, end))
+        assert getattr(width_there, end) == pytest.approx(size * getattr(width, end))
+
+
+def test_people_stand_on_both_feet_as_long_as_two_stances_exceed_a_stride() -> None:
+    stance, both = people_stance(Pace(1.2, LEG)), people_double_support(Pace(1.2, LEG))
+    assert (1.0 + both.low, 1.0 + both.high) == pytest.approx((2.0 * stance.low, 2.0 * stance.high))
 
 
 def test_human_stance_is_shorter_in_faster_walks() -> None:

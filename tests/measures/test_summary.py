@@ -10,6 +10,7 @@ import pytest
 from humanwalk.body.joint_map import JointMap
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import events_of
+from humanwalk.measures.path import SPACING
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import foot_lift, foot_line_error, summarize, tracking_errors
 from humanwalk.numerics import Mask
@@ -275,3 +276,36 @@ def test_cost_of_transport_of_a_known_power(columns: tuple[str, ...], joints: Jo
 def test_cost_of_transport_of_no_way_forward_is_null(columns: tuple[str, ...], distance: float) -> None:
     signals = walk_of(columns)
     assert cost_of_transport(signals, np.ones(signals.num_rows, dtype=bool), MASS, distance) is None
+
+
+def test_qp_failures_are_counted_to_the_end(columns: tuple[str, ...]) -> None:
+    signals = walk_of(columns, **{"qp.failures": np.floor})
+    assert summary_of(signals)["qp_failures"] == 5
+
+
+def test_ik_converged_share_is_that_of_both_legs_and_all_samples(columns: tuple[str, ...]) -> None:
+    signals = walk_of(columns, **{"right_leg.ik_converged": 1.0, "left_leg.ik_converged": lambda t: t < 2.5})
+    assert summary_of(signals)["ik_converged_share"] == pytest.approx(0.75, abs=0.01)
+
+
+def test_deviation_from_the_path_counts_in_the_steady_walk_only(columns: tuple[str, ...]) -> None:
+    scenario = load_scenario("walk")
+    begin = steady_from(scenario)
+    aside = {"com.x_m": lambda t: 0.3 * t, "com.y_m": lambda t: np.where(t < begin, 0.2 * np.sin(t), 0.0)}
+    summary = summarize(scenario, walk_of(columns, begin + 3.0, **aside), "completed", 2.0, "made up")
+    assert summary["path_deviation_m"] == pytest.approx(0.0, abs=SPACING)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "point", "velocity"), [("sideways", "com.y_m", 0.3), ("backward", "com.x_m", -0.4)]
+)
+def test_a_walk_to_any_side_covers_distance_at_a_cost(
+    columns: tuple[str, ...], joints: JointMap, scenario: str, point: str, velocity: float
+) -> None:
+    work = {f"{joints.names[0]}.torque_N_m": 20.0, f"{joints.names[0]}.velocity_rad_s": 2.0}
+    signals = walk_of(columns, 12.0, **{"com.x_m": 0.0, point: lambda t: velocity * t}, **work)
+    summary = summarize(load_scenario(scenario), signals, "completed", 2.0, "made up")
+    assert summary["distance_m"] == pytest.approx(12.0 * abs(velocity))
+    assert summary["mean_speed_m_s"] == pytest.approx(velocity if point == "com.x_m" else 0.0)
+    assert summary["cost_of_transport"] == pytest.approx(40.0 / (MASS * GRAVITY * abs(velocity)), rel=1e-3)
+    assert (summary["lateral_drift_m"] is None) == (scenario == "sideways")

@@ -1,10 +1,16 @@
 """Symmetry of a walk: the index, and the measures of both legs."""
 
+from collections.abc import Callable
+
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from humanwalk.measures.symmetry import symmetry_index
+from humanwalk.body.limbs import LEGS
+from humanwalk.measures.symmetry import asymmetries, symmetry_index
+from humanwalk.measures.walk_measures import Walk
+from humanwalk.scenario import load_scenario
 
 POSITIVE = st.floats(1e-3, 1e3)
 
@@ -31,3 +37,32 @@ def test_ten_percent_more_than_the_mean_on_each_side() -> None:
 @pytest.mark.parametrize(("right", "left"), [(None, 1.0), (1.0, None), (1.0, -1.0), (0.0, 0.0)])
 def test_there_is_no_index_without_two_values_of_one_sign(right: float | None, left: float | None) -> None:
     assert symmetry_index(right, left) is None
+
+
+def test_a_measure_that_changes_on_the_right_changes_there_only(walk: Callable[..., pa.Table]) -> None:
+    leg, change, signals = LEGS["Right"], 1.2, walk()
+    made = {name: signals[name].to_numpy() for name in signals.column_names}
+    made["right_foot.force_z_N"] = change * made["right_foot.force_z_N"]
+    for joint in (leg.hip_flexion, leg.knee, leg.ankle):
+        made[f"{joint}.torque_N_m"] = change * made[f"{joint}.torque_N_m"]
+        # An offset is no range.
+        made[f"{joint}.angle_rad"] = 0.3 + change * made[f"{joint}.angle_rad"]
+    found, before = (asymmetries(Walk.of(table, load_scenario("thesis"))) for table in (pa.table(made), signals))
+    for name, both in found.items():
+        factor = change if "peak" in name or "range" in name else 1.0
+        assert both.right == pytest.approx(factor * before[name].right, rel=1e-6), name
+        assert both.left == pytest.approx(before[name].left, rel=1e-6), name
+    assert before["peak vertical force"].right == pytest.approx(1.1, abs=0.01)
+
+
+def test_peaks_compare_the_same_phenomenon_of_both_legs(walk: Callable[..., pa.Table]) -> None:
+    """Of opposite powers, one leg delivers the peak that the other one absorbs."""
+    signals, legs = walk(), [LEGS[side].ankle for side in ("Right", "Left")]
+    made = {name: signals[name].to_numpy() for name in signals.column_names}
+    for ankle, rate in zip(legs, (1.0, -1.0), strict=True):
+        torque = made[f"{ankle}.torque_N_m"]
+        made[f"{ankle}.velocity_rad_s"] = rate * (torque < torque.mean()) + 0.1 * rate * (torque > torque.mean())
+    found = asymmetries(Walk.of(pa.table(made), load_scenario("thesis")))
+    delivered, absorbed = found["ankle peak power"], found["ankle peak absorbed power"]
+    assert delivered.right == pytest.approx(absorbed.left, rel=0.05)
+    assert delivered.left == pytest.approx(absorbed.right, rel=0.05)
