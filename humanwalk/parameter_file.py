@@ -17,7 +17,7 @@ from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
 from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
-from humanwalk.yaml_text import line_of, read_yaml, shown, yaml_text
+from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
@@ -156,6 +156,15 @@ def rebuild[T](parameters: T, data: Mapping[str, Any]) -> T:
     return cast(T, rebuilt)
 
 
+def build_value(value: Any, name: str) -> Any:
+    """A value for a field that another dataclass will check; `name` is its place, for errors.
+
+    Raises:
+        ParameterError: YAML files may not have such a value.
+    """
+    return _build_any(value, _Place(name, object))
+
+
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
     return yaml_text(_plain(parameters))
@@ -194,13 +203,14 @@ def _tagged(choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a value stands: its dotted path, and the dataclass of the whole file, for hints."""
+    """Where a value stands: its dotted path, the dataclass of the whole file, for hints, and the groups around it."""
 
     path: str
     root: type[Any]
+    depth: int = 0
 
     def __truediv__(self, name: str) -> "_Place":
-        return _Place(f"{self.path}.{name}" if self.path else name, self.root)
+        return _Place(f"{self.path}.{name}" if self.path else name, self.root, self.depth + 1)
 
     def __str__(self) -> str:
         return self.path
@@ -362,9 +372,9 @@ def anchor_paths(kind: Any, data: Any, folder: Path) -> None:
 
 def _build_any(value: Any, place: _Place) -> Any:
     """A value that another dataclass will check: finite numbers, printable text, lists and mappings of them."""
-    if isinstance(value, dict):
+    if isinstance(value, dict) and place.depth < MAX_DEPTH:
         return _build(Mapping[str, Any], value, place)
-    if isinstance(value, list | tuple):
+    if isinstance(value, list | tuple) and place.depth < MAX_DEPTH:
         return list(_build(tuple[Any, ...], value, place))
     if value is None or isinstance(value, bool):
         return value
@@ -374,7 +384,7 @@ def _build_any(value: Any, place: _Place) -> Any:
         return value
     raise ParameterError(
         f"{place}: {shown(value)} cannot be a value; allowed: finite numbers, text on one line, true, false, lists and "
-        "groups of them; write one of these"
+        f"groups of them, at most {MAX_DEPTH} inside each other; write one of these"
     )
 
 

@@ -11,6 +11,9 @@ from humanwalk.quantity import ParameterError, printable
 MAX_NODES = 20_000
 """Number of values in a file, with aliases and merge keys written out; a complete scenario has three hundred."""
 
+MAX_DEPTH = 50
+"""Lists and groups inside each other; a tuning with a complete scenario has ten. What visits them is recursive."""
+
 _BRIEF = reprlib.Repr(maxlevel=3, maxlist=4, maxdict=4, maxset=4, maxstring=60, maxlong=60, maxother=60)
 
 
@@ -52,7 +55,7 @@ def read_yaml(text: str, name: str) -> dict[str, Any]:
     Keys at the root that begin with an underscore hold anchors, as everywhere in Drake, and are left out.
 
     Raises:
-        ParameterError: not YAML, not a mapping, a key twice, or too many values.
+        ParameterError: not YAML, not a mapping, a key twice, too many values, or too deep ones.
     """
     try:
         root = yaml.compose(text, Loader=_Loader)
@@ -99,25 +102,32 @@ def _entry(node: yaml.Node | None, part: str) -> tuple[yaml.Node, int] | None:
 
 
 def _require_sound(root: yaml.Node | None, name: str) -> None:
-    """Raise ParameterError where a mapping has a key twice, or a file stands for too many values."""
-    sizes: dict[int, int] = {}
+    """Raise ParameterError where a mapping has a key twice, or a file stands for too many values or too deep ones."""
+    extents: dict[int, tuple[int, int]] = {}
 
-    def size(node: yaml.Node, inside: frozenset[int]) -> int:
+    def extent(node: yaml.Node, inside: frozenset[int]) -> tuple[int, int]:
+        """Number of values that a node stands for, and number of lists and groups inside each other."""
         if not isinstance(node, yaml.CollectionNode):
-            return 1
+            return 1, 0
         if id(node) in inside:
             raise ParameterError(f"{name}: a value contains itself; write it out")
-        if id(node) not in sizes:
+        if id(node) not in extents:
             if isinstance(node, yaml.MappingNode):
                 _require_keys_once(node, name)
                 children = [child for pair in node.value for child in pair]
             else:
                 children = node.value
-            sizes[id(node)] = 1 + sum(size(child, inside | {id(node)}) for child in children)
-        return sizes[id(node)]
+            below = [extent(child, inside | {id(node)}) for child in children]
+            extents[id(node)] = 1 + sum(size for size, _ in below), 1 + max((depth for _, depth in below), default=0)
+        return extents[id(node)]
 
-    if root is not None and size(root, frozenset()) > MAX_NODES:
+    size, depth = (0, 0) if root is None else extent(root, frozenset())
+    if size > MAX_NODES:
         raise ParameterError(f"{name}: stands for too many values; allowed: up to {MAX_NODES}; write fewer aliases")
+    if depth > MAX_DEPTH:
+        raise ParameterError(
+            f"{name}: {depth} lists and groups inside each other; allowed: up to {MAX_DEPTH}; write fewer"
+        )
 
 
 def _require_keys_once(mapping: yaml.MappingNode, name: str) -> None:

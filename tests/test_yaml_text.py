@@ -6,7 +6,7 @@ import pytest
 
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario
-from humanwalk.yaml_text import line_of
+from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml
 
 TEXT = """\
 duration: 5
@@ -58,3 +58,23 @@ def test_an_error_of_an_override_has_no_line_of_the_file(tmp_path: Path) -> None
         load_scenario(tmp_path / "mine.yaml", {"subject.mass": "500"})
     with pytest.raises(ParameterError, match=r"^subject.mass: 5 is out of range"):
         load_scenario(tmp_path / "mine.yaml", {"subject": "{mass: 5}"})
+
+
+NESTED = "{}[" + "[" * (MAX_DEPTH // 2) + "{}" + "]" * (MAX_DEPTH // 2) + "]"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: " + "[" * MAX_DEPTH + "]" * MAX_DEPTH,
+        "a: " + "{b: " * 400 + "}" * 400,
+        f"a: {NESTED.format('&inner ', '')}\nb: {NESTED.format('', '*inner')}",
+    ],
+)
+def test_values_too_deep_for_what_visits_them_are_refused_in_one_line(text: str) -> None:
+    with pytest.raises(ParameterError, match=rf"^mine: \d+ lists and groups inside each other; .*up to {MAX_DEPTH}"):
+        read_yaml(text, "mine")
+
+
+def test_values_may_be_as_deep_as_is_allowed() -> None:
+    assert read_yaml("a: " + "[" * (MAX_DEPTH - 1) + "1" + "]" * (MAX_DEPTH - 1), "mine")
