@@ -8,6 +8,7 @@ import io
 import json
 import math
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -18,8 +19,10 @@ from scipy.stats import qmc
 
 from humanwalk.files import read_text
 from humanwalk.numerics import Array
+from humanwalk.parameter_file import build_value
 from humanwalk.quantity import ParameterError, file_path, printable, quantity
 from humanwalk.study.factors import Factor, Variants
+from humanwalk.yaml_text import shown
 
 Point = Mapping[str, Any]
 """Values by the names of the factors; a factor without a value keeps what the scenario has."""
@@ -139,7 +142,14 @@ class Rows(Design):
                     f"{where}: row {number} has {len(cells)} values; allowed: {len(header)}, one for each column; "
                     "correct the row"
                 )
-        return [{name: _cell(cell) for name, cell in zip(header, cells, strict=True) if cell.strip()} for cells in rows]
+        return [
+            {
+                name: _cell(cell, f"{where}: row {number}, column {printable(name)}")
+                for name, cell in zip(header, cells, strict=True)
+                if cell.strip()
+            }
+            for number, cells in enumerate(rows, 1)
+        ]
 
 
 DESIGNS: dict[str, type[Design]] = {
@@ -182,9 +192,21 @@ def _require_number(points: int, factors: int) -> None:
         )
 
 
-def _cell(text: str) -> Any:
-    """A CSV cell as a value: JSON where it is JSON, else text."""
+def _cell(text: str, place: str) -> Any:
+    """A CSV cell as a value: JSON where it is JSON, else text; `place` is for errors."""
     try:
-        return json.loads(text)
+        value = json.loads(text, object_pairs_hook=_group)
+    except ParameterError as error:
+        raise ParameterError(f"{place}: {error}") from None
     except (ValueError, RecursionError):
-        return text.strip()
+        value = text.strip()
+    return build_value(value, place)
+
+
+def _group(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A group in JSON; JSON readers silently keep the last of equal names."""
+    group = dict(pairs)
+    if len(group) < len(pairs):
+        ((name, _),) = Counter(name for name, _ in pairs).most_common(1)
+        raise ParameterError(f"{shown(name)} comes twice; allowed: every field once in its group; remove one")
+    return group

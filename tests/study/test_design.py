@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from humanwalk.quantity import ParameterError
 from humanwalk.study.design import MAX_POINTS, FullFactorial, LatinHypercube, OneAtATime, Rows, Sobol
 from humanwalk.study.factors import Factor, Range, Seeds, Uniform, Values, Variants
+from humanwalk.yaml_text import MAX_DEPTH
 
 levels = st.lists(st.integers(), min_size=1, max_size=4, unique=True).map(lambda values: Values(tuple(values)))
 factors = st.dictionaries(st.text("abc", min_size=1), levels, max_size=4)
@@ -113,6 +114,24 @@ def test_files_that_are_no_rows_are_refused(tmp_path: Path, text: str, match: st
     file.write_text(text)
     with pytest.raises(ParameterError, match=match):
         Rows(str(file)).points({})
+
+
+@pytest.mark.parametrize(
+    ("cell", "match"),
+    [
+        ('"slow walk,\nbare foot"', r"'slow walk,\\nbare foot' cannot be a value"),
+        (r'"""\ud800"""', "cannot be a value"),
+        ("NaN", "nan cannot be a value"),
+        ("[" * 900 + "]" * 900, f"at most {MAX_DEPTH} inside each other"),
+        ('"{""mass"": 80, ""mass"": 60}"', "'mass' comes twice"),
+    ],
+)
+def test_a_cell_that_cannot_be_a_value_is_refused_with_its_place(tmp_path: Path, cell: str, match: str) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text(f"duration,subject\n3,\n2,{cell}\n")
+    with pytest.raises(ParameterError, match=f"points.csv: row 2, column subject.*{match}") as raised:
+        Rows(str(file)).points({})
+    assert str(raised.value).isprintable()
 
 
 def test_rows_have_no_other_factors(tmp_path: Path) -> None:
