@@ -25,7 +25,8 @@ MAX_TABLE_BYTES = 4_000_000_000
 ARROW: Mapping[type, pa.DataType] = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
 
 Columns = Mapping[str, type]
-"""Types of the columns by name: bool, int, float or str; str also holds lists and groups, as JSON."""
+"""Types of the columns by name: bool, int, float or str; str also holds lists, groups and text that is not printable,
+as JSON."""
 
 
 def start(path: Path, columns: Columns, number: int) -> pa.Table:
@@ -95,6 +96,8 @@ def read(path: Path, columns: Columns, number: int) -> pa.Table:
     rows = index.to_numpy()
     if index.null_count or rows.min() < 0 or rows.max() >= number:
         raise _refusal(path, f"an index of a row that is not in 0 to {number - 1}")
+    if [b"%d" % row for row in rows] != [line.partition(b",")[0] for line in lines]:
+        raise _refusal(path, "a line that does not begin with the index of a row")
     if np.unique(rows).size < rows.size:
         raise _refusal(path, "a row twice")
     return table.take(np.argsort(rows))
@@ -126,7 +129,8 @@ def _cell(value: Any, kind: type) -> str:
     if value is None:
         return ""
     if kind is str:
-        return value if isinstance(value, str) else json.dumps(value)
+        # JSON has no line ends, which would make two lines of a row, and writes what is no Unicode.
+        return value if isinstance(value, str) and value.isprintable() else json.dumps(value)
     return repr(kind(value)).lower()
 
 

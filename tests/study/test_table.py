@@ -1,5 +1,7 @@
 """The table of a study on disk."""
 
+import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from humanwalk.quantity import ParameterError
+from humanwalk.study.design import OneAtATime
+from humanwalk.study.factors import Values
 from humanwalk.study.study import Study, parse_study
 from humanwalk.study.table import PARQUET, POINTS, ROW, STUDY, TABLE, join, open_journal, read_table, table_columns
 
@@ -49,6 +53,19 @@ def test_journal_resumes_where_it_was_left(tmp_path: Path) -> None:
         assert journal.done == {0, 5}
         journal.append(2, ROWS[0])
     assert read_table(tmp_path)[ROW].to_pylist() == [0, 2, 5]
+
+
+@pytest.mark.parametrize("text", ["slow walk,\nbare foot", "a\rb", "\ud800", "\0"])
+def test_a_row_is_one_line_whatever_its_texts_are(tmp_path: Path, text: str) -> None:
+    scenario = replace(SIX.scenario, description=text)
+    study = Study(scenario=scenario, factors={"description": Values(("x",))}, design=OneAtATime())
+    with open_journal(tmp_path, study) as journal:
+        for index in (1, 0):
+            journal.append(index, ROWS[1])
+        journal.finish()
+    assert read_table(tmp_path)["description"].to_pylist() == [json.dumps(text), "x"]
+    with open_journal(tmp_path, study) as journal:
+        assert journal.done == {0, 1}
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -127,6 +144,10 @@ def test_points_of_a_file_are_kept_with_the_table(tmp_path: Path) -> None:
         (lambda text: text.replace("\n1,", "\n,"), "not in 0 to 5"),
         (lambda text: text.replace("\n1,", "\nx,"), "allowed: the file as humanwalk study or tune wrote it"),
         (lambda text: text.replace("\n1,", "\n1,,"), "allowed: the file as humanwalk study or tune wrote it"),
+        (lambda text: text.replace("\n1,", '\n"1",'), "does not begin with the index"),
+        (lambda text: text.replace("\n1,", "\n0x1,"), "does not begin with the index"),
+        (lambda text: text.replace("\n1,", "\n\n1,"), "does not begin with the index"),
+        (lambda text: text.replace("completed", '"comp\nleted"'), "does not begin with the index"),
         (lambda text: text.replace("true", "maybe"), "allowed: the file as humanwalk study or tune wrote it"),
         (lambda text: text + "\0\n", "allowed: the file as humanwalk study or tune wrote it"),
     ],
