@@ -174,10 +174,8 @@ def _levels(factors: Mapping[str, Factor]) -> dict[str, Sequence[Any]]:
 
 def _sampled(factors: Mapping[str, Factor], samples: Array) -> list[Point]:
     """Points from samples of the unit cube, shape (points, factors)."""
-    return [
-        {name: factor.quantile(float(u)) for (name, factor), u in zip(factors.items(), sample, strict=True)}
-        for sample in samples
-    ]
+    columns = [factor.quantiles(shares) for factor, shares in zip(factors.values(), samples.T, strict=True)]
+    return [dict(zip(factors, values, strict=True)) for values in zip(*columns, strict=True)]
 
 
 def _require_number(points: int, factors: int) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import truncnorm
 
+from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, did_you_mean, only, printable, quantity
 
 MAX_LEVELS = 100_000
@@ -36,10 +37,10 @@ class Factor:
             "range or list"
         )
 
-    def quantile(self, u: float) -> Any:
-        """The value below which a share u, 0 <= u < 1, of all values is; each level has an equal share."""
+    def quantiles(self, shares: Array) -> list[Any]:
+        """The values below which shares u, 0 <= u < 1, of all values are; each level has an equal share."""
         levels = self.levels()
-        return levels[min(int(u * len(levels)), len(levels) - 1)]
+        return [levels[min(int(u * len(levels)), len(levels) - 1)] for u in shares.tolist()]
 
     def overrides(self, name: str, level: Any) -> Mapping[str, Any]:
         """Values of scenario fields by dotted name, for a level of the factor `name`."""
@@ -76,8 +77,8 @@ class Range(Factor):
     def levels(self) -> Sequence[Any]:
         return _rounded(np.linspace(self.low, self.high, self.number))
 
-    def quantile(self, u: float) -> Any:
-        return self.low + u * (self.high - self.low)
+    def quantiles(self, shares: Array) -> list[Any]:
+        return [self.low + u * (self.high - self.low) for u in shares.tolist()]
 
 
 @dataclass(frozen=True)
@@ -97,8 +98,8 @@ class LogRange(Factor):
     def levels(self) -> Sequence[Any]:
         return _rounded(np.geomspace(self.low, self.high, self.number))
 
-    def quantile(self, u: float) -> Any:
-        return float(self.low * (self.high / self.low) ** u)
+    def quantiles(self, shares: Array) -> list[Any]:
+        return [float(self.low * (self.high / self.low) ** u) for u in shares.tolist()]
 
 
 @dataclass(frozen=True)
@@ -112,8 +113,8 @@ class Uniform(Factor):
         """Raise ParameterError unless low < high."""
         _require_order(self.low, self.high)
 
-    def quantile(self, u: float) -> Any:
-        return self.low + u * (self.high - self.low)
+    def quantiles(self, shares: Array) -> list[Any]:
+        return [self.low + u * (self.high - self.low) for u in shares.tolist()]
 
 
 @dataclass(frozen=True)
@@ -131,16 +132,17 @@ class Normal(Factor):
             raise ParameterError(f"mean: {self.mean:g} is out of range; allowed: finite numbers; write one")
         if not self.low < self.high:
             raise ParameterError(f"low: {self.low:g} is not below high: {self.high:g}; write the smaller number as low")
-        if self.standard_deviation > 0.0 and not math.isfinite(self.quantile(0.5)):
+        if self.standard_deviation > 0.0 and not math.isfinite(*self.quantiles(np.array([0.5]))):
             raise ParameterError(
                 f"low: {self.low:g} and high: {self.high:g} leave nothing of the distribution; allowed: bounds within "
                 "some standard deviations of the mean; move them"
             )
 
-    def quantile(self, u: float) -> Any:
+    def quantiles(self, shares: Array) -> list[Any]:
         a, b = ((bound - self.mean) / self.standard_deviation for bound in (self.low, self.high))
         # Without a bound there is no smallest value.
-        return float(truncnorm.ppf(max(u, 1e-12), a, b, loc=self.mean, scale=self.standard_deviation))
+        values = truncnorm.ppf(np.maximum(shares, 1e-12), a, b, loc=self.mean, scale=self.standard_deviation)
+        return [float(value) for value in values]
 
 
 @dataclass(frozen=True)
