@@ -9,7 +9,7 @@ import json
 import math
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -54,9 +54,9 @@ class FullFactorial(Design):
     """Every combination of all levels; the last factor changes fastest."""
 
     def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
-        levels = _levels(factors)
-        _require_number(math.prod(len(each) for each in levels.values()), len(levels))
-        return [dict(zip(levels, values, strict=True)) for values in product(*levels.values())]
+        _require_number(math.prod(_level_counts(factors)), len(factors))
+        levels = [factor.levels() for factor in factors.values()]
+        return [dict(zip(factors, values, strict=True)) for values in product(*levels)]
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,8 @@ class OneAtATime(Design):
     """The scenario without changes, then each level of each factor alone."""
 
     def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
-        levels = _levels(factors)
-        _require_number(1 + sum(len(each) for each in levels.values()), len(levels))
-        return [{}, *({name: level} for name, each in levels.items() for level in each)]
+        _require_number(1 + sum(_level_counts(factors)), len(factors))
+        return [{}, *({name: level} for name, factor in factors.items() for level in factor.levels())]
 
 
 @dataclass(frozen=True)
@@ -126,22 +125,8 @@ class Rows(Design):
         where = printable(self.file)
         if not self.file:
             raise ParameterError("design.rows.file: empty; allowed: the path of a CSV file; write it")
-        lines = csv.reader(io.StringIO(read_text(Path(self.file), MAX_CSV_BYTES)), strict=True)
-        try:
-            header, *rows = [cells for cells in lines if cells]
-        except (csv.Error, ValueError):
-            raise ParameterError(
-                f"{where}: not CSV with a header; allowed: names of fields, then rows of values; correct the file"
-            ) from None
-        if len(set(header)) < len(header) or not all(name and name.isprintable() for name in header):
-            raise ParameterError(f"{where}: the header is empty or has a name twice; allowed: every field once")
+        header, rows = _read_rows(Path(self.file), where)
         _require_number(len(rows), len(header))
-        for number, cells in enumerate(rows, 1):
-            if len(cells) != len(header):
-                raise ParameterError(
-                    f"{where}: row {number} has {len(cells)} values; allowed: {len(header)}, one for each column; "
-                    "correct the row"
-                )
         return [
             {
                 name: _cell(cell, f"{where}: row {number}, column {printable(name)}")
@@ -162,14 +147,12 @@ DESIGNS: dict[str, type[Design]] = {
 """The designs that a study file can name."""
 
 
-def _levels(factors: Mapping[str, Factor]) -> dict[str, Sequence[Any]]:
-    found = {}
+def _level_counts(factors: Mapping[str, Factor]) -> Iterator[int]:
     for name, factor in factors.items():
         try:
-            found[name] = factor.levels()
+            yield factor.level_count()
         except ParameterError as error:
             raise ParameterError(f"factors.{name}: {error}") from None
-    return found
 
 
 def _sampled(factors: Mapping[str, Factor], samples: Array) -> list[Point]:
@@ -181,13 +164,42 @@ def _sampled(factors: Mapping[str, Factor], samples: Array) -> list[Point]:
 def _require_number(points: int, factors: int) -> None:
     if points * factors > MAX_VALUES:
         raise ParameterError(
-            f"design: {points} points of {factors} factors; allowed: up to {MAX_VALUES} values; use fewer of them"
+            f"design: {shown(points)} points of {factors} factors; allowed: up to {MAX_VALUES} values; use fewer"
         )
     if not 1 <= points <= MAX_POINTS:
         raise ParameterError(
             f"design: {points} points; allowed: 1 to {MAX_POINTS}; use fewer levels, or another design, or several "
             "studies"
         )
+
+
+def _read_rows(path: Path, where: str) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a CSV file, read no farther than a study may go; `where` names it in errors."""
+    lines = filter(None, csv.reader(io.StringIO(read_text(path, MAX_CSV_BYTES)), strict=True))
+    rows: list[list[str]] = []
+    try:
+        header = next(lines, [])
+        if len(set(header)) < len(header) or not all(name and name.isprintable() for name in header):
+            raise ParameterError(f"{where}: the header is empty or has a name twice; allowed: every field once")
+        most = min(MAX_POINTS, MAX_VALUES // max(len(header), 1))
+        for number, cells in enumerate(lines, 1):
+            if number > most:
+                raise ParameterError(
+                    f"{where}: more than {most} rows of {len(header)} values; allowed: up to that; use several studies"
+                )
+            if len(cells) != len(header):
+                raise ParameterError(
+                    f"{where}: row {number} has {len(cells)} values; allowed: {len(header)}, one for each column; "
+                    "correct the row"
+                )
+            rows.append(cells)
+    except csv.Error:
+        header = []
+    if not header:
+        raise ParameterError(
+            f"{where}: not CSV with a header; allowed: names of fields, then rows of values; correct the file"
+        )
+    return header, rows
 
 
 def _cell(text: str, place: str) -> Any:

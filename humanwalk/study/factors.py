@@ -37,6 +37,10 @@ class Factor:
             "range or list"
         )
 
+    def level_count(self) -> int:
+        """Number of levels, known before they are made; raises as `levels`."""
+        return len(self.levels())
+
     def quantiles(self, shares: Array) -> list[Any]:
         """The values below which shares u, 0 <= u < 1, of all values are; each level has an equal share."""
         levels = self.levels()
@@ -77,6 +81,9 @@ class Range(Factor):
     def levels(self) -> Sequence[Any]:
         return _rounded(np.linspace(self.low, self.high, self.number))
 
+    def level_count(self) -> int:
+        return self.number
+
     def quantiles(self, shares: Array) -> list[Any]:
         return [self.low + u * (self.high - self.low) for u in shares.tolist()]
 
@@ -97,6 +104,9 @@ class LogRange(Factor):
 
     def levels(self) -> Sequence[Any]:
         return _rounded(np.geomspace(self.low, self.high, self.number))
+
+    def level_count(self) -> int:
+        return self.number
 
     def quantiles(self, shares: Array) -> list[Any]:
         return [float(self.low * (self.high / self.low) ** u) for u in shares.tolist()]
