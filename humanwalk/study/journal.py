@@ -40,7 +40,7 @@ def start(path: Path, columns: Columns, number: int) -> pa.Table:
     Returns:
         The rows so far, in the order of their indices.
     """
-    lines = whole_lines(path) if path.exists() else []
+    lines = whole_lines(path, number) if path.exists() else []
     if not lines:
         write_whole(path, lambda beside: beside.write_bytes(line_of(list(columns))))
         return read(path, columns, number)
@@ -74,7 +74,7 @@ def read(path: Path, columns: Columns, number: int) -> pa.Table:
     Raises:
         ParameterError: it is no table with these columns and up to this number of rows.
     """
-    header, *lines = whole_lines(path) or [b""]
+    header, *lines = whole_lines(path, number) or [b""]
     if header != line_of(list(columns)):
         raise _refusal(path, "columns of another study or tuning, or of another version of humanwalk")
     schema = {name: ARROW[kind] for name, kind in columns.items()}
@@ -103,15 +103,23 @@ def read(path: Path, columns: Columns, number: int) -> pa.Table:
     return table.take(np.argsort(rows))
 
 
-def whole_lines(path: Path) -> list[bytes]:
-    """Lines of a table with their ends, without one that was cut at the end."""
-    lines = read_regular(path, MAX_TABLE_BYTES).splitlines(keepends=True)
+def whole_lines(path: Path, number: int) -> list[bytes]:
+    """Lines of a table with their ends, without one that was cut at the end.
+
+    Raises:
+        ParameterError: it cannot be read, or has more lines than a header and this number of rows.
+    """
+    content = read_regular(path, MAX_TABLE_BYTES)
+    # Counted before they are split: a line as an object takes 40 bytes more than in the file.
+    if content.count(b"\n") > number + 1:
+        raise _refusal(path, f"more than {number} rows")
+    lines = io.BytesIO(content).readlines()
     return lines if not lines or lines[-1].endswith(b"\n") else lines[:-1]
 
 
-def sort(path: Path) -> None:
-    """Put the lines of a table in the order of their indices."""
-    header, *lines = whole_lines(path)
+def sort(path: Path, number: int) -> None:
+    """Put the lines of a table of up to this number of rows in the order of their indices."""
+    header, *lines = whole_lines(path, number)
     ordered = sorted(lines, key=lambda line: int(line.partition(b",")[0]))
     if lines != ordered:
         content = b"".join([header, *ordered])

@@ -128,7 +128,7 @@ class Journal:
 
     def finish(self) -> None:
         """Put the lines of a complete table in the order of the points, and write the Parquet file."""
-        journal.sort(self.folder / TABLE)
+        journal.sort(self.folder / TABLE, len(self.study.points))
         self.write_parquet()
 
 

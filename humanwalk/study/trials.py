@@ -112,7 +112,7 @@ def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
         path = require_inside(folder, folder / TRIALS)
         table = journal.start(path, trial_columns(tuning), MAX_TRIALS)
         yield TrialTable(path, tuning, {row[TRIAL]: row for row in _checked(path, table)})
-        journal.sort(path)
+        journal.sort(path, MAX_TRIALS)
 
 
 def _claim(folder: Path, tuning: Tuning) -> None:

@@ -149,6 +149,8 @@ def test_points_of_a_file_are_kept_with_the_table(tmp_path: Path) -> None:
         (lambda text: text.replace("\n1,", "\n\n1,"), "does not begin with the index"),
         (lambda text: text.replace("completed", '"comp\nleted"'), "does not begin with the index"),
         (lambda text: text.replace("true", "maybe"), "allowed: the file as humanwalk study or tune wrote it"),
+        (lambda text: text + "0\n" * 7, "more than 6 rows"),
+        (lambda text: text + "0\r" * 7 + "\n", "allowed: the file as humanwalk study or tune wrote it"),
         (lambda text: text + "\0\n", "allowed: the file as humanwalk study or tune wrote it"),
     ],
 )
