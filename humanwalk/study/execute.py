@@ -20,6 +20,7 @@ from typing import Any, Protocol
 import pyarrow as pa
 
 from humanwalk.extras import missing_package
+from humanwalk.files import require_inside
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.study.row import Job, Row, simulate_row
 from humanwalk.study.study import Study
@@ -253,8 +254,14 @@ def run_study(
 
 
 def list_jobs(study: Study, journal: Journal, shard: Shard = WHOLE) -> Iterator[Job]:
-    """Jobs of the points of a shard that have no row, in order."""
+    """Jobs of the points of a shard that have no row, in order.
+
+    Raises:
+        ParameterError: a run folder leads out of the folder of the study.
+    """
+    within = journal.folder.absolute()
     for index, point in enumerate(study.points):
         if index not in journal.done and shard.has(index):
-            folder = journal.folder.absolute() / RUNS / f"{index:06d}" if study.keep == "runs" else None
+            kept = study.keep == "runs"
+            folder = require_inside(within, within / RUNS / f"{index:06d}") if kept else None
             yield Job(index, study.scenario_at(point), folder)

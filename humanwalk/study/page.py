@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
-from humanwalk.files import make_folder
+from humanwalk.files import make_folder, require_inside
 from humanwalk.quantity import ParameterError
 from humanwalk.study.figures import effects, greatest, measure_figures
 from humanwalk.study.results import SURVIVAL, Results
@@ -204,13 +204,14 @@ def write_study_figures(folder: Path, results: Results, measures: Sequence[str],
     """Write the figures of a study's page as files of a format into `plots` in its folder; returns their paths.
 
     Raises:
-        ParameterError: they cannot be written, or the format is unknown.
+        ParameterError: they cannot be written, `plots` leads out of the folder, or the format is unknown.
     """
     if form not in FORMATS:
         raise ParameterError(f"--figures {form}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
-    make_folder(folder / PLOTS)
+    plots = require_inside(folder, folder / PLOTS)
+    make_folder(plots)
     return [
-        save(figure, folder / PLOTS / f"{name}.{form}")
+        save(figure, plots / f"{name}.{form}")
         for section in sections(results, measures)
         for name, figure in section.figures.items()
     ]

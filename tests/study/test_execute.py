@@ -22,10 +22,10 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import Scenario
 from humanwalk.study.cluster import KILLS_ALLOWED, local_client, remote_client
-from humanwalk.study.execute import Shard, run_jobs, run_study
+from humanwalk.study.execute import Shard, list_jobs, run_jobs, run_study
 from humanwalk.study.row import Job, Row, run_columns
 from humanwalk.study.study import parse_study
-from humanwalk.study.table import ROW, TABLE, read_table, table_columns
+from humanwalk.study.table import ROW, TABLE, open_journal, read_table, table_columns
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "from humanwalk.cli.main import main; main()"
@@ -100,6 +100,18 @@ def test_study_writes_rows_and_run_folders(tmp_path: Path) -> None:
         assert row["peak_torque_N_m.RightLegTibiaMotion"] == run.summary["peak_torque_N_m"]["RightLegTibiaMotion"]
         assert row["versions.drake"] == run.summary["versions"]["drake"]
     assert table.column_names[1:] == list(dict.fromkeys(["seed", *run_columns()]))
+
+
+@pytest.mark.parametrize("link", ["runs", "runs/000000"])
+def test_no_run_folder_is_outside_the_folder_of_the_study(tmp_path: Path, link: str) -> None:
+    study = parse_study("keep: runs")
+    outside, path = tmp_path / "outside", tmp_path / "out" / link
+    outside.mkdir()
+    with open_journal(tmp_path / "out", study) as journal:
+        path.parent.mkdir(exist_ok=True)
+        path.symlink_to(outside)
+        with pytest.raises(ParameterError, match=r"runs/000000: leads out of .*remove the link"):
+            list(list_jobs(study, journal))
 
 
 @given(count=st.integers(1, 50), points=st.integers(1, 200))

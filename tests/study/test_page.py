@@ -207,3 +207,12 @@ def test_figures_are_written_as_files(grid: Results, tmp_path: Path) -> None:
     assert all(path.stat().st_size > 1000 for path in paths)
     with pytest.raises(ParameterError, match="--figures tiff: unknown; allowed: png, svg, pdf"):
         write_study_figures(tmp_path, grid, [], "tiff")
+
+
+def test_no_figure_is_written_outside_the_folder_of_the_study(grid: Results, tmp_path: Path) -> None:
+    for name in ("study", "outside"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "study" / "plots").symlink_to(tmp_path / "outside")
+    with pytest.raises(ParameterError, match=r"plots: leads out of .*remove the link"):
+        write_study_figures(tmp_path / "study", grid, [], "png")
+    assert list((tmp_path / "outside").iterdir()) == []
