@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 
 from humanwalk.numerics import Array, Mask
 from humanwalk.study.objectives import NO_LIMIT
@@ -60,7 +61,12 @@ def parameters(tuning: Tuning, rows: Sequence[Row], best: Row, starts: Mapping[s
         column = f"parameters.{name}"
         _draw_trials(axes, _column(rows, column), costs, rows, best, "cost", best[column])
         axes.axvline(starts[name], color=REFERENCE, linestyle="--", linewidth=0.9)
-        axes.set_xscale("log" if limits.log else "linear")
+        if limits.log:
+            axes.set_xscale("log")
+            # Figures have no formulas, which the usual one writes.
+            axes.xaxis.set_major_formatter(LogFormatter())
+            axes.xaxis.set_minor_formatter(LogFormatter())
+            axes.tick_params(axis="x", which="minor", labelsize=TICK_SIZE)
         axes.set_xlim(limits.low, limits.high)
         label(axes, ".".join(name.split(".")[-2:]), "cost" if place % COLUMNS == 0 else "")
     for axes in figure.axes[len(names) :]:

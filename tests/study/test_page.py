@@ -29,6 +29,7 @@ from humanwalk.study.page import (
 )
 from humanwalk.study.results import SURVIVAL, Results
 from humanwalk.study.row import Row
+from humanwalk.view.plots.drawing import save
 
 GRID = """
 description: A <b>grid</b> & more
@@ -186,6 +187,17 @@ def test_the_page_is_self_contained_and_escapes_texts(sample: Results, grid: Res
         assert b"</svg>" in base64.b64decode(data)
     described = write_study_page(tmp_path, grid, grid.measures()).read_text(encoding="utf-8")
     assert "A &lt;b&gt;grid&lt;/b&gt; &amp; more" in described
+
+
+def test_texts_are_no_formulas(make_results: Callable[..., Results], tmp_path: Path) -> None:
+    text = SAMPLE.replace('"<script>alert(1)</script>"', r"'$\frac{a$'").replace("large", "$large$")
+    made = make_results(text, sampled)
+    assert write_study_page(tmp_path, made, made.measures()).is_file()
+    figure = figures_of(made)["survived_over_factors"]
+    save(figure, tmp_path / "survived.png")
+    labels = [tick for axes in figure.axes for tick in axes.get_xticklabels() if "$" in tick.get_text()]
+    assert [tick.get_text() for tick in labels] == [r"$\frac{a$", "$large$"]
+    assert not any(tick.get_parse_math() for tick in labels)
 
 
 def test_a_study_that_runs_still_is_so_described(grid: Results, tmp_path: Path) -> None:

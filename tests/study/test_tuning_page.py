@@ -10,8 +10,10 @@ from humanwalk.scenario import load_scenario
 from humanwalk.study.row import Row
 from humanwalk.study.trial import RUNS
 from humanwalk.study.trials import TRIAL, best, open_table, pareto_front, read_trials, score_of, trial_row, write_best
-from humanwalk.study.tuning import Tuning, parse_tuning
+from humanwalk.study.tuning import Tuning, parse_tuning, start_values
+from humanwalk.study.tuning_figures import parameters
 from humanwalk.study.tuning_page import parameter_rows, value_rows, write_tuning_page
+from humanwalk.view.plots.drawing import save
 
 TUNING = """
 description: Cheap & <b>stable</b>
@@ -71,6 +73,20 @@ def test_texts_of_the_file_are_no_markup(tmp_path: Path) -> None:
     assert "<script" not in page
     assert "<b>stable" not in page
     assert html.escape("<script>alert(1)</script>") in page
+
+
+def test_numbers_at_a_logarithmic_axis_are_no_formulas(tmp_path: Path) -> None:
+    tuning = filled(tmp_path, "cma_es", 10)
+    rows = read_trials(tmp_path)[1]
+    found = best(tuning, rows)
+    assert found is not None
+    figure = parameters(tuning, rows, found, start_values(tuning))
+    save(figure, tmp_path / "parameters.png")
+    weight = figure.axes[1]
+    assert weight.get_xscale() == "log"
+    texts = [tick.get_text() for tick in (*weight.get_xticklabels(), *weight.get_xticklabels(minor=True))]
+    assert "200" in texts
+    assert not any("$" in text for text in texts)
 
 
 @pytest.mark.parametrize("trials", [0, 1, 2])

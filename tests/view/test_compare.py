@@ -21,6 +21,7 @@ from humanwalk.view.compare import (
     names_of,
     write_comparison,
 )
+from humanwalk.view.plots.drawing import svg_data
 from humanwalk.view.plots.overlays import OVERLAYS
 
 
@@ -75,6 +76,15 @@ def test_an_overlay_has_a_curve_for_every_run_and_axes_with_units(runs: list[Run
         ]
         assert "[" in axes.get_xlabel()
         assert "[" in axes.get_ylabel()
+
+
+@pytest.mark.parametrize("name", OVERLAYS)
+def test_names_of_runs_stand_in_the_legend_as_they_are(runs: list[Run], name: str) -> None:
+    figure = OVERLAYS[name](runs, [r"a$\frac{$", "_b"])
+    assert figure is not None
+    assert svg_data(figure, name)
+    (legend,) = figure.legends
+    assert [text.get_text().strip() for text in legend.get_texts()] == [r"a$\frac{$", "_b"]
 
 
 def test_the_page_is_self_contained_and_has_everything(runs: list[Run], tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
 from humanwalk.body import Side
 from humanwalk.body.visual import SIDE_COLORS
@@ -111,7 +112,10 @@ def svg_data(figure: Figure, name: str) -> str:
 
 
 def _draw(figure: Figure, target: Path | io.BytesIO, form: str, salt: str, dpi: float) -> None:
+    # Names of runs, factors and variants are texts of others: no formula may be read into a pair of dollar signs.
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
     no_date = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form, {})
     # A fixed salt instead of a random one makes the SVG reproducible.
-    with rc_context({"svg.hashsalt": salt}):
+    with rc_context({"svg.hashsalt": salt, "text.parse_math": False}):
         figure.savefig(target, format=form, dpi=dpi, metadata=no_date)

@@ -72,7 +72,10 @@ def _of_leg(run: Run, angle: Curve, side: Side) -> Array:
 
 
 def _each(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Run, str, str]]:
-    return list(zip(runs, names, RUN_COLORS[: len(runs)], strict=True))
+    """Each run with its label and color."""
+    # A legend of matplotlib leaves labels out that begin with an underscore.
+    labels = [f" {name}" if name.startswith("_") else name for name in names]
+    return list(zip(runs, labels, RUN_COLORS[: len(runs)], strict=True))
 
 
 def _mean_curve(axes: Axes, run: Run, values: Callable[[Side], Array], name: str, color: str) -> None:
