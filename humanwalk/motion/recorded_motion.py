@@ -113,6 +113,11 @@ class RecordedMotion:
         value, rate = self._at(time)
         return value[:-6], rate[:-6]
 
+    def angles_at(self, recorded: Array) -> Array:
+        """Joint angles [rad] at times in the recording [s], shape (times, n)."""
+        values: Array = self._curve(recorded)
+        return values[:, :-6]
+
     def pelvis(self, time: float) -> PelvisMotion:
         """Pose and spatial velocity of the pelvis at a time [s]."""
         value, rate = self._at(time)

@@ -19,6 +19,9 @@ from humanwalk.quantity import ParameterError, printable
 RATE = 200.0
 """Samples per second at which a recording is searched for touchdowns [1/s]."""
 
+MAX_DURATION = 3600.0
+"""Longest recording [s]: few numbers may stand for a time that is too long to be searched."""
+
 MIN_STRIDE = 0.6
 """Shortest stride that is a walk [s]."""
 
@@ -52,12 +55,17 @@ def recorded_gait(motion: RecordedMotion, subject: Subject, name: str) -> Record
         name: Of the recording, for messages.
 
     Raises:
-        ParameterError: it has no two touchdowns of each leg, or does not go forward.
+        ParameterError: it is too long, has no two touchdowns of each leg, or does not go forward.
     """
     plant = kinematics_plant(subject)
     joints = JointMap.of(plant)
-    time = np.arange(0.0, motion.time[-1], 1.0 / RATE)
-    angles = np.array([motion.joints(t)[0] for t in time])
+    end = float(motion.time[-1])
+    if end > MAX_DURATION:
+        raise ParameterError(
+            f"{printable(name)}: {end:g} s long; allowed: up to {MAX_DURATION:g} s; shorten it, or give times in s"
+        )
+    time = np.arange(0.0, end, 1.0 / RATE)
+    angles = motion.angles_at(time)
     strides, cycles = [], []
     for side in SIDES:
         hip, knee, _ = columns = [joints.names.index(joint) for joint in styled_joints(LEGS[side])]

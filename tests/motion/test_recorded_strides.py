@@ -53,8 +53,20 @@ def test_the_mean_stride_begins_at_touchdown(side: Side) -> None:
         assert min(errors) < np.radians(2.5)
 
 
+def of_two_rows(duration: float) -> RecordedMotion:
+    motion = recording()
+    first = (motion.angles[:2], motion.pelvis_angles[:2], motion.pelvis_position[:2])
+    return RecordedMotion(np.array([0.0, duration]), *first, ease_in=0.0)
+
+
 @pytest.mark.parametrize(
-    "motion, message", [(recording(1.0), "touchdowns of the"), (recording(speed=-SPEED), "the pelvis moves at -0.9")]
+    "motion, message",
+    [
+        (recording(1.0), "touchdowns of the"),
+        (recording(speed=-SPEED), "the pelvis moves at -0.9"),
+        (of_two_rows(3600.0), "0 touchdowns of the"),
+        (of_two_rows(1e10), r"1e\+10 s long; allowed: up to 3600 s"),
+    ],
 )
 def test_what_is_not_a_walk_is_refused_in_one_line(motion: RecordedMotion, message: str) -> None:
     with pytest.raises(ParameterError, match=message) as caught:
