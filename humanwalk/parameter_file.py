@@ -17,7 +17,7 @@ from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
 from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
-from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
+from humanwalk.yaml_text import MAX_DEPTH, index_of, line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
@@ -91,13 +91,13 @@ def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
 
 def _index(entries: list[Any], part: str, name: str) -> int:
     """Index of an entry that a part of a dotted name stands for; the one after the last is made."""
-    if not (part.isascii() and part.isdecimal() and len(part) < 6 and int(part) <= len(entries)):
+    if (index := index_of(part)) is None or index > len(entries):
         raise ParameterError(
             f"{printable(name)}: no such entry; allowed: 0 to {len(entries)}; {len(entries)} adds an entry"
         )
-    if int(part) == len(entries):
+    if index == len(entries):
         entries.append(None)
-    return int(part)
+    return index
 
 
 @contextmanager

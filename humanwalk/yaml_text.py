@@ -92,12 +92,18 @@ def line_of(text: str, field: str) -> int | None:
     return line
 
 
+def index_of(part: str) -> int | None:
+    """Index of a list's entry that a part of a dotted name stands for; None if it stands for none."""
+    # No list is so long, and Python refuses to read numbers of thousands of digits.
+    return int(part) if part.isascii() and part.isdecimal() and len(part) < 6 else None
+
+
 def _entry(node: yaml.Node | None, part: str) -> tuple[yaml.Node, int] | None:
     """Node of an entry of a mapping or list, and its line from 0; None if there is none."""
     if isinstance(node, yaml.MappingNode):
         return next(((value, key.start_mark.line) for key, value in node.value if key.value == part), None)
-    if isinstance(node, yaml.SequenceNode) and part.isdecimal() and int(part) < len(node.value):
-        return node.value[int(part)], node.value[int(part)].start_mark.line
+    if isinstance(node, yaml.SequenceNode) and (index := index_of(part)) is not None and index < len(node.value):
+        return node.value[index], node.value[index].start_mark.line
     return None
 
 

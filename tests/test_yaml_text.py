@@ -32,6 +32,7 @@ terrain: plane
         # What a file does not write out is where its group is.
         ("controller.balanced.command.points.1.turn", 7),
         ("controller.balanced.command.points.2.turn", 5),
+        (f"controller.balanced.command.points.{'1' * 5000}.turn", 5),
         ("terrain.plane.slope", 9),
         ("subject.mass", None),
         ("", None),

@@ -26,7 +26,7 @@ from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.study.design import DESIGNS, Design, FullFactorial, Point
 from humanwalk.study.factors import FACTORS, Factor, Values
-from humanwalk.yaml_text import read_yaml, shown
+from humanwalk.yaml_text import index_of, read_yaml, shown
 
 Keep = Literal["summary", "runs"]
 
@@ -81,7 +81,7 @@ class Study:
             return point[name]
         value: Any = self.base
         for part in name.split("."):
-            key: Any = int(part) if isinstance(value, list) and part.isdecimal() else part
+            key: Any = index_of(part) if isinstance(value, list) else part
             try:
                 value = value[key]
             except (KeyError, IndexError, TypeError):

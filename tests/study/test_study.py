@@ -78,6 +78,8 @@ def test_column_shows_the_scenarios_value_where_a_point_has_none() -> None:
         "{duration: [3], pushes.given.1.impulse: [5], pushes.given.9.impulse: [5], v: {variants: {a: {seed: 1}}}}"
     )
     assert [study.value_at({}, name) for name in study.columns] == [9, 30.0, None, None]
+    for index in ("x", "9" * 5000):
+        assert study.value_at({}, f"pushes.given.{index}.impulse") is None
     assert study.value_at({"duration": 3}, "duration") == 3
 
 
