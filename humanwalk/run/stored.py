@@ -23,8 +23,9 @@ MAX_ROWS = 200_000
 MAX_COLUMNS = 1000
 """A record has some 320."""
 
-COLUMN_NAME = re.compile(r"[A-Za-z]\w{0,62}\.[A-Za-z]\w{0,62}", re.ASCII)
-"""Names of columns: no formula of a spreadsheet, and two names of fields for MATLAB, which end at 63 characters."""
+COLUMN_NAME = re.compile(rf"(?!{TIME}\.)[A-Za-z]\w{{0,62}}\.[A-Za-z]\w{{0,62}}", re.ASCII)
+"""Names of columns but the time: no formula of a spreadsheet, and two names of fields for MATLAB, which end at 63
+characters and of which the first is not that of the time."""
 
 MAX_SIGNALS_BYTES = 1_000_000_000
 MAX_SUMMARY_BYTES = 1_000_000

@@ -180,6 +180,7 @@ KNEE = "RightLegTibiaMotion.angle_rad"
         (lambda table: table.append_column("a." + "x" * 200, table["com.z_m"]), "is not named thing.quantity_unit"),
         (lambda table: table.append_column("=cmd|' /C calc'!A0", table["com.z_m"]), "is not named"),
         (lambda table: table.append_column("com", table["com.z_m"]), "column com is not named"),
+        (lambda table: table.append_column(f"{TIME}.x", table["com.z_m"]), f"column {TIME}.x is not named"),
         (with_type(pa.string()), "com.x_m is of type string"),
         (with_type(pa.int64()), "com.x_m is of type int64"),
         (with_type(pa.float32()), "com.x_m is of type float"),
