@@ -21,6 +21,7 @@ from humanwalk.quantity import ParameterError, printable
 from humanwalk.scenario import dump_scenario
 from humanwalk.study import journal
 from humanwalk.study.objectives import Score, measured, score
+from humanwalk.study.results import MAX_MAGNITUDE
 from humanwalk.study.row import Row
 from humanwalk.study.trial import RUNS
 from humanwalk.study.tuning import MAX_TRIALS, Tuning, dump_tuning, load_tuning
@@ -111,7 +112,7 @@ def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
         _claim(folder, tuning)
         path = require_inside(folder, folder / TRIALS)
         table = journal.start(path, trial_columns(tuning), MAX_TRIALS)
-        yield TrialTable(path, tuning, {row[TRIAL]: row for row in _checked(path, table)})
+        yield TrialTable(path, tuning, {row[TRIAL]: row for row in _checked(path, tuning, table)})
         journal.sort(path, MAX_TRIALS)
 
 
@@ -151,18 +152,20 @@ def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:
     """
     tuning = read_tuning(folder)
     path = require_inside(folder, folder / TRIALS)
-    return tuning, _checked(path, journal.read(path, trial_columns(tuning), MAX_TRIALS))
+    return tuning, _checked(path, tuning, journal.read(path, trial_columns(tuning), MAX_TRIALS))
 
 
-def _checked(path: Path, table: pa.Table) -> list[Row]:
-    """The rows of a table; a value of an objective or bound may be missing, nothing else, and numbers are finite."""
+def _checked(path: Path, tuning: Tuning, table: pa.Table) -> list[Row]:
+    """The rows of a table; a value of an objective or bound may be missing, nothing else, and numbers are in range."""
+    ranges = {f"parameters.{name}": (limits.low, limits.high) for name, limits in tuning.parameters.items()}
     for name in table.column_names:
-        column = table[name]
+        column, (low, high) = table[name], ranges.get(name, (-MAX_MAGNITUDE, MAX_MAGNITUDE))
+        values = column.drop_null().to_numpy()
         missing = column.null_count and not name.startswith("values.") and name not in ("end", "host")
-        if missing or (column.type == pa.float64() and not np.isfinite(column.drop_null().to_numpy()).all()):
+        if missing or (column.type == pa.float64() and not ((low <= values) & (values <= high)).all()):
             raise ParameterError(
-                f"{printable(path)}: column {printable(name)} has a cell that is empty or not finite; allowed: the "
-                "file as humanwalk tune wrote it; restore it, or choose another folder with -o"
+                f"{printable(path)}: column {printable(name)} has a cell that is empty or not within {low:g} to "
+                f"{high:g}; allowed: the file as humanwalk tune wrote it; restore it, or choose another folder with -o"
             )
     rows: list[Row] = table.to_pylist()
     return rows

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from humanwalk.scenario import load_scenario
+from humanwalk.study.results import MAX_MAGNITUDE
 from humanwalk.study.row import Row
 from humanwalk.study.trial import RUNS
 from humanwalk.study.trials import TRIAL, best, open_table, pareto_front, read_trials, score_of, trial_row, write_best
@@ -87,6 +88,16 @@ def test_numbers_at_a_logarithmic_axis_are_no_formulas(tmp_path: Path) -> None:
     texts = [tick.get_text() for tick in (*weight.get_xticklabels(), *weight.get_xticklabels(minor=True))]
     assert "200" in texts
     assert not any("$" in text for text in texts)
+
+
+def test_the_largest_numbers_of_a_table_are_drawn(tmp_path: Path) -> None:
+    tuning = filled(tmp_path, "nsga2", 25)
+    for sign in (-1.0, 1.0):
+        name = f"values.{next(iter(tuning.objectives))}"
+        row = read_trials(tmp_path)[1][0] | {name: sign * MAX_MAGNITUDE, "cost": -sign * MAX_MAGNITUDE}
+        with open_table(tmp_path, tuning) as table:
+            table.append(len(table.rows), row | {TRIAL: len(table.rows)})
+    assert write_tuning_page(tmp_path, *read_trials(tmp_path)).is_file()
 
 
 @pytest.mark.parametrize("trials", [0, 1, 2])
