@@ -145,6 +145,11 @@ def workers_client(workers: int | None, scheduler: str | None, slurm: Path | Non
         raise ParameterError(f"{named}: exclude each other; allowed: one of them; remove the others")
     with ExitStack() as stack:
         with console.status("starting the workers"):
-            cluster = slurm_client(slurm) if slurm else remote_client(scheduler) if scheduler else local_client(workers)
+            if slurm is not None:
+                cluster = slurm_client(slurm)
+            elif scheduler is not None:
+                cluster = remote_client(scheduler)
+            else:
+                cluster = local_client(workers)
             client = stack.enter_context(cluster)
         yield client

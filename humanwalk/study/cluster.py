@@ -92,7 +92,8 @@ def remote_client(address: str) -> Iterator[Client]:
     with _quiet():
         try:
             client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
+        # A protocol that this machine is not set up for, like tls without keys, is a TypeError of Dask.
+        except (OSError, ValueError, TypeError) as error:
             problem = printable(error) or type(error).__name__
         else:
             problem = ""

@@ -505,7 +505,14 @@ def test_diagram_of_an_unknown_scenario_is_refused(refusal: Any) -> None:
     assert "thesiss" in refusal("diagram", "thesiss", "-o", "d.svg")
 
 
-# Tunings.
+# Studies and tunings.
+
+
+def test_an_empty_address_of_a_scheduler_is_refused(refusal: Any, tmp_path: Path) -> None:
+    """As an unset variable of the shell gives it: the study does not run on this machine instead."""
+    (tmp_path / "short.yaml").write_text("set: {duration: 0.02}")
+    assert refusal("study", "short.yaml", "-o", "x", "--scheduler", "").startswith("humanwalk: --scheduler : ")
+    assert not (tmp_path / "x").exists()
 
 
 def test_a_tuning_that_cannot_be_used_is_refused(refusal: Any, tmp_path: Path) -> None:

@@ -142,7 +142,7 @@ def test_study_with_a_point_that_cannot_be_simulated_makes_no_folder(tmp_path: P
 
 def test_scheduler_that_does_not_answer_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("humanwalk.study.cluster.CONNECT_TIMEOUT", 0.5)
-    for address in ("tcp://127.0.0.1:9", "nonsense", "tcp://"):
+    for address in ("tcp://127.0.0.1:9", "nonsense", "tcp://", "tls://127.0.0.1:9", "ucx://127.0.0.1:9"):
         with pytest.raises(ParameterError, match="start one with: dask scheduler") as raised, remote_client(address):
             pass
         assert str(raised.value).isprintable()
