@@ -119,8 +119,12 @@ def open_table(folder: Path, tuning: Tuning) -> Iterator[TrialTable]:
 def _claim(folder: Path, tuning: Tuning) -> None:
     """Write the tuning into an empty folder, or raise ParameterError unless the folder is of the same tuning."""
     if (folder / TUNING).exists():
+        found = read_tuning(folder)
+        if found == tuning:
+            # It may be the file that the user wrote, with comments.
+            return
         # More trials continue a tuning.
-        if replace(read_tuning(folder), trials=tuning.trials) != tuning:
+        if replace(found, trials=tuning.trials) != tuning:
             raise ParameterError(
                 f"-o {printable(folder)}: holds another tuning; allowed: a new folder, or that of the same tuning, "
                 "which resumes; choose another"

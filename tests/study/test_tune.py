@@ -155,6 +155,15 @@ def test_a_trial_that_falls_costs_more_than_any_that_walks(tmp_path: Path, one_w
     assert all(row["upright_share"] < 1 / 3 for row in fallen)
 
 
+def test_the_file_of_the_same_tuning_is_left_as_its_author_wrote_it(tmp_path: Path, one_worker: Client) -> None:
+    mine, more = (f"# mine\n{TUNING}trials: {trials}\n" for trials in (1, 2))
+    (tmp_path / "tuning.yaml").write_text(mine)
+    tune(parse_tuning(mine), tmp_path, one_worker, function=sphere)
+    assert (tmp_path / "tuning.yaml").read_text() == mine
+    tune(parse_tuning(more), tmp_path, one_worker, function=sphere)
+    assert read_trials(tmp_path)[0].trials == len(rows(tmp_path)) == 2
+
+
 def test_the_folder_of_another_tuning_is_refused_in_a_line(tmp_path: Path, one_worker: Client) -> None:
     tune(tuning(trials="1"), tmp_path, one_worker, function=sphere)
     with pytest.raises(ParameterError, match=r"holds another tuning; allowed: a new folder"):
