@@ -14,6 +14,7 @@ from humanwalk.body.loads import Backpack
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.measures.events import FootEvents, events_of
+from humanwalk.measures.path import path_deviation
 from humanwalk.measures.signals import matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -225,6 +226,30 @@ def test_the_feet_of_a_fast_walk_do_not_cross(fast: float) -> None:
     landings = [row for side in SIDES for row in events_of(outcome.signals, side).touchdowns if steady[row]]
     assert len(landings) > 10
     assert min(left[row] - right[row] for row in landings) > 0.05
+
+
+OUT_AND_BACK = (
+    "{time: 0.5, forward: 0.8}, {time: 3}, {time: 5, turn: 0.4}, {time: 12.854}, {time: 13.5, forward: 0.8}"
+)
+"""Half a turn on the spot."""
+
+
+@pytest.mark.parametrize(
+    ("duration", "points"),
+    [(9.0, "{time: 1, forward: 0.5, sideways: 0.3}"), (17.0, OUT_AND_BACK)],
+    ids=["to the left of the heading", "out and back"],
+)
+def test_the_walker_stays_on_a_path_that_is_not_straight_ahead(duration: float, points: str) -> None:
+    """With steps of 0.65 s to the side it fell; on the way back it turned to the way out, and fell."""
+    outcome = simulate(
+        parse_scenario(f"{{duration: {duration}, controller: {{balanced: {{command: {{points: [{points}]}}}}}}}}")
+    )
+    assert outcome.end == "completed"
+    deviation = path_deviation(
+        outcome.signals, np.ones(outcome.signals.num_rows, dtype=bool), outcome.scenario.controller.command
+    )
+    assert deviation is not None
+    assert deviation < 0.12
 
 
 @pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0], ids=["forward", "left", "backward"])

@@ -45,8 +45,9 @@ class HeightMap(Piece):
     file: str = file_path()
     """A .csv or .npy file with heights [m], or a gray .png; a relative path counts from the scenario's folder."""
 
-    cell_size: float = quantity(0.1, "m", 0.02, 10.0)
-    """Edge of a cell, one number or pixel of the file."""
+    cell_size: float = quantity(0.4, "m", 0.02, 10.0)
+    """Edge of a cell, one number or pixel of the file. A cell is a flat face: the balanced walker takes no foothold on
+    cells that are shorter than its soles."""
 
     black: float = quantity(0.0, "m", -MAX_HEIGHT, MAX_HEIGHT)
     """Height of black in a .png."""

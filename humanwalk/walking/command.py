@@ -79,11 +79,11 @@ class CommandParameters:
         return max((point.forward for point in self.points), key=abs, default=0.0)
 
     def points_at_speed(self, speed: float) -> tuple[CommandPoint, ...]:
-        """The points with another greatest forward speed [m/s], the others in proportion; backward stays backward.
+        """The points with another greatest forward speed [m/s], negative for a walk backward, the others in proportion.
 
         Points without any forward speed all get the new one; without points there is one at 1 s.
         """
-        greatest = abs(self.greatest_forward)
+        greatest = self.greatest_forward
         points = self.points or CommandParameters.points
         return tuple(
             replace(point, forward=speed * (point.forward / greatest if greatest else 1.0)) for point in points

@@ -51,7 +51,7 @@ def rollover(
     swing = parameters.swing
     climbing = max(1.0 - swing.rolling_share(start.step_to(goal)), swing.raising_share(raised))
     climbing *= clip(length / parameters.placement.abreast, 0.0, 1.0)
-    duration = parameters.timing.at_speed(command.forward).step
+    duration = parameters.timing.at_velocity(command.velocity).step
     ordinary = min(command.forward, SHORT_STEP * length / duration)
     speed = (1.0 - climbing) * ordinary + climbing * max(ordinary, parameters.rockers.full_pitch_speed)
     return Rollover(speed, heel_off_lead(start, goal, command.forward, parameters), climbing)

@@ -90,7 +90,7 @@ class PhaseTransitions:
             state = state._replace(phase=Phase.WEIGHT_SHIFT, elapsed=0.0)
         if state.phase is Phase.WEIGHT_SHIFT:
             # The command may still change before the first step.
-            timing = self._parameters.timing.at_speed(command.forward)
+            timing = self._parameters.timing.at_velocity(command.velocity)
             ready = self._look_ahead(state._replace(timing=timing, caution=0.0), command)
             if state.elapsed < timing.weight_shift:
                 return ready._replace(path_correction=state.path_correction)
@@ -163,7 +163,7 @@ class PhaseTransitions:
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_stepping else 0,
             early=max(state.timing.step - state.elapsed, 0.0),
-            timing=self._parameters.timing.at_speed(command.forward, caution),
+            timing=self._parameters.timing.at_velocity(command.velocity, caution),
             ground=state.ground,
             caution=caution,
         )
@@ -182,7 +182,7 @@ class PhaseTransitions:
             phase=Phase.DOUBLE_SUPPORT,
             elapsed=0.0,
             stance=stance,
-            timing=self._parameters.timing.at_speed(command.forward, 1.0),
+            timing=self._parameters.timing.at_velocity(command.velocity, 1.0),
             caution=1.0,
         )
         return self._look_ahead(careful, command)
@@ -244,7 +244,7 @@ class PhaseTransitions:
         caution = self._parameters.caution.on_ground(self._heights(state, preview))
         if caution <= state.caution:
             return state
-        return state._replace(caution=caution, timing=self._parameters.timing.at_speed(command.forward, caution))
+        return state._replace(caution=caution, timing=self._parameters.timing.at_velocity(command.velocity, caution))
 
     def _preview(self, state: PlannerState, command: Command, before: Preview) -> tuple[PeriodicGait, Preview]:
         """The desired gait, and its next footholds."""

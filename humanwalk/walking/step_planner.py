@@ -94,8 +94,7 @@ class StepPlanner:
         next_state, reference = plan(state, body, command, dcm)
         # In standing a turn that is too slow for steps would add up.
         along = replace(command, turn=0.0) if state.phase is Phase.STAND else command
-        path = state.path.advanced(along, self._period)
-        return next_state._replace(path=path, zmp=reference.zmp), reference
+        return next_state._replace(path=state.path.advanced(along, self._period), zmp=reference.zmp), reference
 
     def _feel(self, state: PlannerState, body: BodyState) -> PlannerState:
         """The state with what the feet feel of the ground."""

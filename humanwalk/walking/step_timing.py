@@ -26,6 +26,10 @@ class StepTiming:
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)
     """Longest duration for a walk ratio: slow walks have shorter steps instead."""
 
+    sideways_speed: float = quantity(0.2, "m/s", 0.01, 2.0)
+    """Sideways speed from which on no step is longer than `step` (our choice): in a walk to the side one foot takes two
+    steps' way, and at 0.5 m/s forward and 0.3 m/s sideways the walker fell with steps of 0.65 s."""
+
     double_support: float = quantity(0.0985, "s", 0.04, 0.4)
     """First part of the step."""
 
@@ -64,17 +68,19 @@ class StepTiming:
                 "have 0.33 to 0.40"
             )
 
-    def at_speed(self, speed: float, caution: float = 0.0) -> "StepTiming":
-        """The timing at a forward speed [m/s]: with length v T, the walk ratio is v T^2.
+    def at_velocity(self, velocity: complex, caution: float = 0.0) -> "StepTiming":
+        """The timing at a commanded velocity: with the length v T of a step forward, the walk ratio is v T^2.
 
         Args:
-            speed: [m/s].
+            velocity: Forward + i sideways [m/s].
             caution: From an ordinary step, 0, to a careful one, 1, which is not longer than `step`.
         """
-        if self.walk_ratio == 0.0 or speed <= 0.0:
+        forward = velocity.real
+        if self.walk_ratio == 0.0 or forward <= 0.0:
             return self
-        ordinary = min(math.sqrt(self.walk_ratio / speed), self.longest_step) / self.step
-        return self.stretched(ordinary + caution * (min(ordinary, 1.0) - ordinary))
+        ordinary = min(math.sqrt(self.walk_ratio / forward), self.longest_step) / self.step
+        share = max(caution, min(abs(velocity.imag) / self.sideways_speed, 1.0))
+        return self.stretched(ordinary + share * (min(ordinary, 1.0) - ordinary))
 
     def stretched(self, factor: float) -> "StepTiming":
         """The timing of a step that takes `factor` times as long."""

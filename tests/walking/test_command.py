@@ -36,11 +36,10 @@ def test_the_greatest_speed_of_a_backward_walk_is_negative() -> None:
     assert CommandParameters(points=()).greatest_forward == 0.0
 
 
-@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=4), st.floats(0.1, 2.0))
+@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=4), st.sampled_from((-0.5, 0.1, 2.0)))
 def test_another_greatest_speed_changes_all_speeds_in_proportion(speeds: list[float], speed: float) -> None:
-    """A backward walk stays one."""
-    assume(max(map(abs, speeds)) > 1e-3)
+    greatest = max(speeds, key=abs)
+    assume(abs(greatest) > 1e-3)
     points = tuple(CommandPoint(time, forward) for time, forward in enumerate(speeds))
-    changed = [point.forward for point in CommandParameters(points=points).points_at_speed(speed)]
-    assert max(map(abs, changed)) == pytest.approx(speed)
-    assert changed == pytest.approx([forward * speed / max(map(abs, speeds)) for forward in speeds])
+    changed = CommandParameters(points=points).points_at_speed(speed)
+    assert [point.forward for point in changed] == pytest.approx([speed * forward / greatest for forward in speeds])

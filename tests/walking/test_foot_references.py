@@ -116,7 +116,7 @@ def test_the_rollover_speed_is_at_most_the_commanded_one_and_small_for_short_ste
     assert speed <= forward
     if length <= 0.0:
         assert speed <= 0.0
-    if length >= forward * TIMING.at_speed(forward).step > 0.0:
+    if length >= forward * TIMING.at_velocity(forward).step > 0.0:
         assert speed == forward
 
 
@@ -125,7 +125,7 @@ def test_the_rollover_after_an_ordinary_step_is_the_same_before_a_careful_one(fo
     goal = Foothold(OLD.position + complex(length, 0.2), 0.0)
     ordinary, careful = (
         rollover(
-            state_at(0.0)._replace(timing=TIMING.at_speed(forward, caution)),
+            state_at(0.0)._replace(timing=TIMING.at_velocity(forward, caution)),
             OLD,
             goal,
             0.0,

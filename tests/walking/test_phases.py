@@ -22,7 +22,7 @@ from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 PARAMETERS = StepPlannerParameters()
 ANKLE = 0.07
 WALK, STOP = Command(0.5), Command()
-TIMING = PARAMETERS.timing.at_speed(WALK.forward)
+TIMING = PARAMETERS.timing.at_velocity(WALK.forward)
 CAREFUL = PARAMETERS.timing.step
 FOOTHOLDS = FootholdPlanner(
     SoleExtent(0.055, 0.211, 0.048), PARAMETERS.footholds, PARAMETERS.placement, PARAMETERS.pacing, com_height=0.95

@@ -24,19 +24,29 @@ def test_double_and_single_support_make_the_step() -> None:
 @given(st.floats(0.05, 2.5))
 def test_without_a_walk_ratio_the_step_takes_the_same_time_at_every_speed(speed: float) -> None:
     timing = replace(TIMING, walk_ratio=0.0)
-    assert timing.at_speed(speed) == timing
+    assert timing.at_velocity(speed) == timing
 
 
 @given(st.floats(0.05, 2.5), st.floats(0.0, 1.0))
 def test_a_careful_step_is_not_longer_than_the_given_duration(speed: float, caution: float) -> None:
-    ordinary, step, careful = (TIMING.at_speed(speed, c).step for c in (0.0, caution, 1.0))
+    ordinary, step, careful = (TIMING.at_velocity(speed, c).step for c in (0.0, caution, 1.0))
     assert careful == pytest.approx(min(ordinary, TIMING.step))
     assert min(careful, ordinary) - 1e-12 <= step <= ordinary + 1e-12
 
 
+@given(st.floats(0.05, 2.5), st.floats(-1.0, 1.0))
+def test_a_step_to_the_side_is_shorter_up_to_the_given_duration(forward: float, sideways: float) -> None:
+    """The feet of a walk to the side are apart by two steps' way in every other step."""
+    ordinary, step = TIMING.at_velocity(forward), TIMING.at_velocity(complex(forward, sideways))
+    assert min(ordinary.step, TIMING.step) - 1e-12 <= step.step <= ordinary.step + 1e-12
+    assert step == TIMING.at_velocity(complex(forward, -sideways))
+    if abs(sideways) >= TIMING.sideways_speed:
+        assert step.step <= TIMING.step + 1e-12
+
+
 @given(st.floats(0.05, 2.5))
 def test_a_walk_ratio_is_length_times_duration_up_to_the_longest_step(speed: float) -> None:
-    timing = replace(TIMING, walk_ratio=0.36).at_speed(speed)
+    timing = replace(TIMING, walk_ratio=0.36).at_velocity(speed)
     if timing.step < TIMING.longest_step:
         assert speed * timing.step**2 == pytest.approx(0.36)
     else:
@@ -59,7 +69,7 @@ def test_a_walk_ratio_with_steps_too_short_for_a_swing_is_refused() -> None:
 @pytest.mark.parametrize("speed", [0.0, -0.5])
 def test_a_walk_ratio_says_nothing_about_standing_and_walking_backward(speed: float) -> None:
     timing = replace(TIMING, walk_ratio=0.36)
-    assert timing.at_speed(speed) == timing
+    assert timing.at_velocity(speed) == timing
 
 
 @given(st.floats(-0.5, 1.5))
