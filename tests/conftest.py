@@ -1,11 +1,15 @@
 """What many tests look at: the reference human, as data and as a plant for kinematics."""
 
+import base64
+import socket
+import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from pydrake.geometry import Meshcat
 from pydrake.multibody.plant import MultibodyPlant
 from scipy.spatial.transform import Rotation
 
@@ -25,6 +29,7 @@ from humanwalk.measures.curves import CURVES
 from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
+from humanwalk.run.live_view import is_lost
 from humanwalk.run.recorder import recorded_signals
 from humanwalk.scenario import load_scenario
 from humanwalk.sides import SIDES, Side
@@ -178,3 +183,24 @@ def columns(joints: JointMap) -> tuple[str, ...]:
     walkers = [make_walker(load_scenario(name)) for name in ("thesis", "stand")]
     names = (column for walker in walkers for signal in recorded_signals(walker, joints) for column in signal.columns)
     return tuple(dict.fromkeys(names))
+
+
+def send_malformed(meshcat: Meshcat) -> None:
+    """Send what is no msgpack as a web page can, and return when Meshcat's thread has ended."""
+    port = meshcat.port()
+    request = ["GET / HTTP/1.1", f"Host: localhost:{port}", "Origin: http://evil.example", "Upgrade: websocket"]
+    request += ["Connection: Upgrade", f"Sec-WebSocket-Key: {base64.b64encode(bytes(16)).decode()}"]
+    request += ["Sec-WebSocket-Version: 13", "", ""]
+    with socket.create_connection(("localhost", port)) as connection:
+        connection.sendall("\r\n".join(request).encode())
+        assert b"101" in connection.recv(1000)
+        # A final binary frame of two bytes with an empty mask; 0xc1 is never used in msgpack.
+        connection.sendall(b"\x82\x82" + bytes(4) + b"\xc1\xff")
+        while not is_lost(meshcat):
+            time.sleep(0.01)
+
+
+@pytest.fixture(scope="session")
+def lose() -> Callable[[Meshcat], None]:
+    """Ends a live view, see `send_malformed`."""
+    return send_malformed

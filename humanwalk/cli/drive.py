@@ -8,10 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from humanwalk.cli.walk import illustrate, run_folder, write_or_rescue
+from humanwalk.cli.walk import LOST, illustrate, run_folder, write_or_rescue
 from humanwalk.quantity import ParameterError
 from humanwalk.run.driven import require_drivable
 from humanwalk.run.folder import Run
+from humanwalk.run.live_view import is_lost
 from humanwalk.run.monitor import caught_signals
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import Scenario, load_scenario
@@ -37,7 +38,7 @@ def drive_and_write(
     console: Console,
     checkpoint_period: float = 60.0,
 ) -> list[Run]:
-    """Drive a scenario until Ctrl-C; returns the saved runs, one for each reset and the last.
+    """Drive a scenario until Ctrl-C or the loss of the page; returns the saved runs, one for each reset and the last.
 
     Args:
         scenario: Name or path.
@@ -65,14 +66,20 @@ def drive_and_write(
         if browser:
             # A text browser in this terminal does not return until it is closed.
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
-        while True:
-            wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
-            ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
-            runs += [run] if run else []
-            if ended is Ended.WALK:
-                ended = wait_for_reset(page)
-            if ended is Ended.INTERRUPT:
-                return runs
+        ended = Ended.RESET
+        try:
+            while ended is not Ended.INTERRUPT:
+                wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
+                ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
+                runs += [run] if run else []
+                if ended is Ended.WALK:
+                    ended = wait_for_reset(page)
+        except RuntimeError:
+            if not is_lost(page.meshcat):
+                raise
+    if is_lost(page.meshcat):
+        console.print(LOST, soft_wrap=True)
+    return runs
 
 
 def _drive_once(

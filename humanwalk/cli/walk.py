@@ -20,11 +20,14 @@ from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
+from humanwalk.run.live_view import is_lost
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
+
+LOST = "the live view was lost: a web page sent a message that Meshcat cannot read; close pages that you do not trust"
 
 
 def walk_and_write(
@@ -58,15 +61,23 @@ def walk_and_write(
     name = name or name_of(scenario)
     for line in loaded.controller.untested:
         console.print(f"warning: {line}", soft_wrap=True)
-    meshcat = make_meshcat(live=live) if live or replay else None
-    if live and meshcat is not None:
-        console.print(f"live at {meshcat.web_url()}")
-    with run_folder(output, name, loaded) as path:
-        _simulate_and_write(loaded, name, path, meshcat, live, checkpoint_period, console)
+    recording = make_meshcat() if replay else None
+    shown = make_meshcat(live=True) if live else None
+    if shown is not None:
+        console.print(f"live at {shown.web_url()}")
+    try:
+        with run_folder(output, name, loaded) as path:
+            _simulate_and_write(loaded, name, path, recording, shown, checkpoint_period, console)
+    except RuntimeError:
+        if shown is None or not is_lost(shown):
+            raise
+        raise ParameterError(LOST) from None
+    if shown is not None and is_lost(shown):
+        console.print(LOST, soft_wrap=True)
     run = Run.open(path)
     if not run.summary["physics"]:
         console.print("no physics: joints and pelvis follow the recording exactly; no forces, torques or balance")
-    illustrate(run, meshcat if replay else None, plots=plots, console=console)
+    illustrate(run, recording, plots=plots, console=console)
     return run
 
 
@@ -202,7 +213,7 @@ def write_or_rescue(path: Path, outcome: Outcome, name: str) -> None:
 
 
 def _simulate_and_write(
-    scenario: Scenario, name: str, path: Path, meshcat: Any, live: bool, checkpoint_period: float, console: Console
+    scenario: Scenario, name: str, path: Path, recording: Any, live: Any, checkpoint_period: float, console: Console
 ) -> None:
     def checkpoint(so_far: Outcome) -> None:
         # A disk that is full now may have space at the end.
@@ -224,12 +235,13 @@ def _simulate_and_write(
     try:
         simulate(
             scenario,
-            meshcat,
+            recording,
             on_progress=show,
-            realtime_rate=1.0 if live else 0.0,
+            realtime_rate=0.0 if live is None else 1.0,
             on_checkpoint=checkpoint,
             checkpoint_period=checkpoint_period,
             on_end=lambda outcome: write_or_rescue(path, outcome, name),
+            live=live,
         )
     finally:
         if progress.live.is_started:

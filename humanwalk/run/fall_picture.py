@@ -34,14 +34,14 @@ def show_fall(scenario: Scenario, meshcats: Sequence[Meshcat], time: float, stat
     """
     builder = DiagramBuilder()
     ragdoll = builder.AddNamedSystem("ragdoll", make_ragdoll(scenario.subject, scenario.terrain, state))
-    for meshcat in meshcats:
-        add_visualizer(builder, ragdoll, meshcat, scenario.recording.frame_rate, scenario.terrain, record=False)
-    simulator = Simulator(builder.Build())
-    simulator.set_target_realtime_rate(realtime_rate)
-    context = simulator.get_mutable_context()
-    context.SetTime(time)
-    plant = ragdoll.GetSubsystemByName("plant")
-    plant.SetPositionsAndVelocities(plant.GetMyMutableContextFromRoot(context), state)
-    # A picture is no reason to lose the run.
+    # A picture is no reason to lose the run: Meshcat may be lost, and the simulation may fail.
     with suppress(RuntimeError):
+        for meshcat in meshcats:
+            add_visualizer(builder, ragdoll, meshcat, scenario.recording.frame_rate, scenario.terrain, record=False)
+        simulator = Simulator(builder.Build())
+        simulator.set_target_realtime_rate(realtime_rate)
+        context = simulator.get_mutable_context()
+        context.SetTime(time)
+        plant = ragdoll.GetSubsystemByName("plant")
+        plant.SetPositionsAndVelocities(plant.GetMyMutableContextFromRoot(context), state)
         simulator.AdvanceTo(time + TIME_TO_LIE)

@@ -18,7 +18,8 @@ from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.fall_picture import show_fall
-from humanwalk.run.monitor import Monitor
+from humanwalk.run.live_view import is_lost
+from humanwalk.run.monitor import INTERRUPTED, Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
@@ -111,6 +112,7 @@ def simulate(
     on_checkpoint: Callable[[Outcome], None] | None = None,
     checkpoint_period: float = 60.0,
     on_end: Callable[[Outcome], object] | None = None,
+    live: Meshcat | None = None,
 ) -> Outcome:
     """Simulate a scenario from its start to its duration, or until it falls, fails or Ctrl-C is pressed.
 
@@ -121,12 +123,13 @@ def simulate(
         realtime_rate: simulated seconds per second that are not exceeded; 0 is as fast as it goes.
         on_checkpoint: called with the outcome so far every `checkpoint_period` seconds of wall-clock time.
         on_end: called with the outcome while signals such as SIGTERM still wait, to save it.
+        live: shows the motion without recording it; if it is lost, the simulation ends as at Ctrl-C.
 
     Raises:
         ParameterError: the scenario cannot be simulated, or failed before there was anything to record.
     """
     require_scenario(scenario, "simulate")
-    prepared = prepare(scenario, meshcat)
+    prepared = prepare(scenario, meshcat, live=live)
     prepared.simulator.set_target_realtime_rate(realtime_rate)
     monitor = Monitor(prepared.watched, scenario.terrain)
     return simulate_prepared(
@@ -181,7 +184,8 @@ def simulate_prepared(
         except (RuntimeError, SystemExit, ValueError, ArithmeticError) as error:
             # When the state has run away, Drake's solvers throw, its checks exit and NumPy raises; the record until
             # then is kept.
-            end = monitor.reason or f"solver failed: {printable((str(error) or repr(error)).splitlines()[0])}"
+            failed = f"solver failed: {printable((str(error) or repr(error)).splitlines()[0])}"
+            end = monitor.reason or (INTERRUPTED if any(map(is_lost, prepared.meshcats)) else failed)
         wall_time = time.perf_counter() - started
         signals = before_runaway(recorder.table(simulator.get_context()))
         if signals.num_rows == 0:

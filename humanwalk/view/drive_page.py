@@ -201,7 +201,8 @@ class DrivePage:
             return
         sticks = []
         for slider, axis, sign in GAMEPAD_AXES:
-            share = sign * axes[axis]
+            # Nor are sticks limited to theirs.
+            share = sign * clip(axes[axis], -1.0, 1.0) if math.isfinite(axes[axis]) else 0.0
             speed = share * (slider.high if share > 0.0 else -slider.low)
             sticks.append(slider.step * round(speed / slider.step))
         for (slider, *_), stick, before in zip(GAMEPAD_AXES, sticks, self._sticks or (0.0, 0.0, 0.0), strict=True):

@@ -2,18 +2,20 @@
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from pydrake.geometry import Meshcat
 from rich.console import Console
 
 from humanwalk.cli import drive as module
 from humanwalk.cli.drive import drive_and_write
 from humanwalk.quantity import ParameterError
 from humanwalk.run.reproduce import reproduce
+from humanwalk.view.drive import wait_for_reset
 from humanwalk.view.drive_page import DrivePage, Hand
 
 IDLE = Hand(None, (), 30.0, 1.0, True, True, False, False, False)
@@ -75,6 +77,18 @@ def test_every_walk_that_is_recorded_becomes_a_run(drive: Any, tmp_path: Path) -
     assert [run.summary["end"] for run in (first, last)] == ["completed", "completed"]
     assert [len(run.scenario.pushes.given) for run in (first, last)] == [1, 0]
     assert reproduce(first).bits_agree
+
+
+def test_a_page_that_is_lost_ends_driving_and_every_walk_is_kept(
+    drive: Any, monkeypatch: pytest.MonkeyPatch, lose: Callable[[Meshcat], None]
+) -> None:
+    def wait(page: DrivePage) -> Any:
+        lose(page.meshcat)
+        return wait_for_reset(page)
+
+    monkeypatch.setattr(module, "wait_for_reset", wait)
+    (walk,) = drive(overrides={"duration": "0.03"})
+    assert walk.summary["end"] == "completed"
 
 
 def test_a_recording_without_physics_is_refused_before_anything_is_written(drive: Any, tmp_path: Path) -> None:

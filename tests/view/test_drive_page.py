@@ -100,6 +100,17 @@ def test_a_slider_sends_nothing_beyond_its_range(page: DrivePage, browser: Brows
     assert IMPULSE.low <= hand.impulse <= IMPULSE.high
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_stick_that_is_nowhere_rests(page: DrivePage, browser: Browser, value: float) -> None:
+    browser.hold([value] * 3, [])
+    assert page.read().target is None
+
+
+def test_a_stick_sends_nothing_beyond_its_range(page: DrivePage, browser: Browser) -> None:
+    browser.hold([-1e308] * 3, [])
+    assert page.read().target == Command(FORWARD.high, SIDEWAYS.high, TURN.high)
+
+
 def test_buttons_change_the_speed_by_steps_and_stop(page: DrivePage, browser: Browser) -> None:
     for button in (FASTER, FASTER, SLOWER):
         browser.press(button)
