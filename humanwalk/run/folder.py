@@ -1,6 +1,7 @@
 """A run on disk: one folder with the scenario, the signals, the summary, the replay and the plots."""
 
 import json
+import logging
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -31,9 +32,11 @@ from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.notebook import html_table
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, file_paths, printable, replace_file_paths
-from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance
+from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance, scenario_hash
 from humanwalk.run.stored import MAX_ROWS, RunSummary, read_signals, read_summary
 from humanwalk.scenario import Scenario, dump_scenario, load_scenario
+
+logger = logging.getLogger(__name__)
 
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
@@ -79,14 +82,21 @@ class Run:
 
     @cached_property
     def scenario(self) -> Scenario:
-        """What was simulated.
+        """What was simulated; a warning is logged if it is not what the summary is of.
 
         Raises:
-            ParameterError: it is no scenario, or reads a file outside the run folder.
+            ParameterError: it is no scenario, reads a file outside the run folder, or the summary cannot be read.
         """
         scenario = load_scenario(self.path / SCENARIO)
         for file in file_paths(scenario).values():
             require_inside(self.path, Path(file))
+        if scenario_hash(scenario) != self.summary["provenance"]["scenario_sha256"]:
+            logger.warning(
+                "%s: %s was changed since the run, or this version reads its fields differently; restore it, or walk "
+                "again",
+                self.path,
+                SCENARIO,
+            )
         return scenario
 
     @cached_property

@@ -7,7 +7,7 @@ from typing import Any
 
 from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.run.folder import Run
-from humanwalk.run.provenance import Provenance, file_hash, scenario_hash, versions
+from humanwalk.run.provenance import Provenance, file_hash, versions
 from humanwalk.run.simulate import simulate
 
 TOLERANCE = 0.01
@@ -83,9 +83,7 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
 
 
 def _changes(run: Run, then: Provenance) -> Iterator[str]:
-    """What has changed since the run."""
-    if then["scenario_sha256"] != scenario_hash(run.scenario):
-        yield "scenario.yaml was changed since the run, or this version reads its fields differently"
+    """What has changed since the run, beside the scenario: `Run.scenario` tells that."""
     for field, path in file_paths(run.scenario).items():
         found = file_hash(path)
         if found is None:

@@ -36,6 +36,20 @@ def test_run_that_was_written_is_read_back(outcome: Outcome, tmp_path: Path) -> 
     assert run.replay.parent == tmp_path
 
 
+def test_a_scenario_that_was_changed_since_the_run_is_read_with_one_warning(
+    outcome: Outcome, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    outcome.write(tmp_path, "thesis")
+    assert Run.open(tmp_path).scenario.subject.mass == 70.0
+    assert caplog.text == ""
+    file = tmp_path / SCENARIO
+    file.write_text(file.read_text().replace("mass: 70.0", "mass: 140.0"))
+    run = Run.open(tmp_path)
+    assert run.scenario.subject.mass == run.scenario.subject.mass == 140.0
+    (record,) = caplog.records
+    assert "scenario.yaml was changed since the run" in record.message
+
+
 def test_signals_know_where_they_come_from(outcome: Outcome, tmp_path: Path) -> None:
     metadata = json.loads(outcome.write(tmp_path, "thesis").signals.schema.metadata[b"humanwalk"])
     assert metadata["scenario"] == "thesis"

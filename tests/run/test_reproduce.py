@@ -91,7 +91,7 @@ def test_other_measures_are_named(run: Run) -> None:
     assert result.verdict == "other measures"
 
 
-def test_later_changes_are_noted(run: Run) -> None:
+def test_later_changes_are_noted(run: Run, caplog: pytest.LogCaptureFixture) -> None:
     changed = change_summary(
         run,
         lambda summary: summary["provenance"].update(
@@ -99,7 +99,7 @@ def test_later_changes_are_noted(run: Run) -> None:
         ),
     )
     notes = " ".join(reproduce(changed).notes)
-    assert "scenario.yaml was changed" in notes
+    assert "scenario.yaml was changed" in caplog.text
     assert "was 1.0" in notes
 
 
