@@ -55,6 +55,17 @@ def printable(text: object, limit: int = 120) -> str:
     return shown[: limit - 3 - tail] + "..." + shown[-tail:]
 
 
+def number_of(text: str) -> float:
+    """The number that text of a file or option is, in digits of ASCII.
+
+    Raises:
+        ValueError: it is none. Python's `float` alone also reads 1_5, as 15, and digits of other scripts.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(f"{printable(text)} is not a number")
+    return float(text)
+
+
 def quantity(default: float, unit: str, low: float, high: float) -> Any:
     """Dataclass field for a number in [low, high], in the given unit ("" for a pure number)."""
     return dataclasses.field(default=default, metadata={"unit": unit, "low": low, "high": high})

@@ -9,7 +9,7 @@ from pathlib import Path
 from humanwalk.body.regions import ANKLE_HEIGHT, TRUNK, WIDTHS, Region, Regions, limb_width, region_names
 from humanwalk.files import read_text
 from humanwalk.parameter_file import MAX_FILE_SIZE, build, load_as
-from humanwalk.quantity import ParameterError, did_you_mean, printable, quantity
+from humanwalk.quantity import ParameterError, did_you_mean, number_of, printable, quantity
 from humanwalk.sides import SIDES
 
 COLUMNS = {"length_m": "length", "width_m": "width", "mass_kg": "mass"}
@@ -221,7 +221,7 @@ def _read_csv(path: Path) -> Measurements:
 
 def _number(cell: str, place: str) -> float:
     try:
-        return float(cell)
+        return number_of(cell)
     except ValueError:
         raise ParameterError(
             f"{place}: {printable(cell, 40)} is not a number; allowed: a number or an empty cell; correct it"

@@ -10,7 +10,7 @@ import itertools
 import math
 from array import array
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from humanwalk.files import read_regular
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, printable
+from humanwalk.quantity import ParameterError, number_of, printable
 
 MAX_BYTES = 50_000_000
 """Largest recording; a quarter of an hour of 50 channels at 100 Hz has 45 MB."""
@@ -35,6 +35,9 @@ MIN_TIME_STEP = 1e-4
 """Shortest time between two rows [s]; motion capture runs at up to 10 kHz."""
 
 FORMATS = (".mot", ".sto", ".csv")
+
+HEADER = ("nrows", "ncolumns", "indegrees")
+"""Keys of an OpenSim header that are read, in lower case."""
 
 TIME_NAMES = ("time", "time_s")
 
@@ -102,7 +105,7 @@ def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTabl
         UnicodeDecodeError: The content is not UTF-8.
     """
     lines = _lines(content, name)
-    in_degrees = None if is_csv else _read_header(lines, name)
+    header = None if is_csv else _read_header(lines, name)
     rows = ((number, _split(line, is_csv)) for number, line in lines if line.strip())
     number, names = next(rows, (0, []))
     _check_names(names, f"{name}: line {number}")
@@ -119,7 +122,10 @@ def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTabl
     if len(data) < 2 * len(names) or not names:
         raise ParameterError(f"{name}: fewer than two rows of numbers; allowed: a row of names, then at least two")
     table = np.frombuffer(data).reshape(-1, len(names))
+    if header is not None:
+        _require_size(header, table.shape, name)
     columns = tuple(column for i, column in enumerate(names) if i != time_column)
+    in_degrees = None if header is None else header.get("indegrees") == "yes"
     return MotionTable(columns, table[:, time_column].copy(), np.delete(table, time_column, axis=1), in_degrees)
 
 
@@ -135,16 +141,29 @@ def _lines(content: bytes, name: str) -> Iterator[tuple[int, str]]:
         yield number, line
 
 
-def _read_header(lines: Iterator[tuple[int, str]], name: str) -> bool:
-    """Read an OpenSim header up to its last line; returns whether it states degrees."""
-    in_degrees = False
-    for _, line in lines:
+def _read_header(lines: Iterator[tuple[int, str]], name: str) -> dict[str, str]:
+    """Read an OpenSim header up to its last line; returns the values of HEADER that it has, in lower case."""
+    header: dict[str, str] = {}
+    for number, line in lines:
         key, _, value = (word.strip().lower() for word in line.partition("="))
         if key == "endheader":
-            return in_degrees
-        if key == "indegrees":
-            in_degrees = value == "yes"
+            return header
+        if key == "indegrees" and value not in ("yes", "no"):
+            raise ParameterError(f"{name}: line {number}: inDegrees={brief(value)}; allowed: yes or no; correct it")
+        if key in HEADER:
+            header[key] = value
     raise ParameterError(f"{name}: no line `endheader`; allowed: an OpenSim storage file; rename a table to .csv")
+
+
+def _require_size(header: Mapping[str, str], shape: tuple[int, ...], name: str) -> None:
+    """Raise ParameterError where a header states another size than the table has: a file may have been truncated."""
+    for key, shown, count in zip(HEADER, ("nRows", "nColumns"), shape, strict=False):
+        stated = header.get(key, str(count))
+        if stated != str(count):
+            raise ParameterError(
+                f"{name}: {shown}={brief(stated)}, but there are {count}; allowed: the number in the file; get the "
+                "whole file, or correct the header"
+            )
 
 
 def _split(line: str, is_csv: bool) -> list[str]:
@@ -192,7 +211,7 @@ def _numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[flo
 
 def _number(cell: str) -> float:
     try:
-        return float(cell)
+        return number_of(cell)
     except ValueError:
         return math.nan
 

@@ -14,7 +14,7 @@ from PIL import Image
 
 from humanwalk.files import read_regular
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, file_path, printable, quantity
+from humanwalk.quantity import ParameterError, file_path, number_of, printable, quantity
 from humanwalk.terrain.face import Color, Face
 from humanwalk.terrain.piece import Piece, require_few_faces
 
@@ -128,7 +128,7 @@ def _csv(content: bytes, name: str) -> Array:
             raise ParameterError(f"{name}: row {row + 1} has {len(cells)} numbers; allowed: {columns}, as in row 1")
         for column, cell in enumerate(cells):
             try:
-                heights[row, column] = float(cell)
+                heights[row, column] = number_of(cell)
             except ValueError:
                 raise ParameterError(
                     f"{name}: row {row + 1}, column {column + 1}: {printable(cell, 40)} is not a number; allowed: "

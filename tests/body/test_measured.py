@@ -148,6 +148,7 @@ def test_all_measured_may_miss_stature_and_mass_by_two_percent() -> None:
         ("segment,length\nthigh,0.4\n", "columns segment, length; allowed: segment, length_m, width_m, mass_kg"),
         ("", "columns ; allowed"),
         ("segment,mass_kg\n", "no segment; allowed: one or more of head"),
+        ("segment,mass_kg\nthigh,1_0\n", "row 2: mass_kg: 1_0 is not a number"),
         ("segment,mass_kg\nthigh,heavy\n", "row 2: mass_kg: heavy is not a number"),
         ("segment,mass_kg\nthigh,nan\n", "segments.thigh.mass: nan is out of range"),
         ("segment,mass_kg\nthigh,-1\n", "segments.thigh.mass: -1 is out of range; allowed: 0 to 100 kg"),

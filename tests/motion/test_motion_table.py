@@ -56,6 +56,31 @@ def test_written_table_is_read_back(tmp_path_factory: pytest.TempPathFactory, da
     np.testing.assert_allclose(found.time, table.time, rtol=1e-11)
 
 
+@pytest.mark.parametrize("flag", ["true", "1", "", "Y"])
+def test_another_flag_of_degrees_is_refused_instead_of_read_as_radians(tmp_path: Path, flag: str) -> None:
+    path = written(tmp_path, HEAD.format(flag=flag) + "time\ta\tb\n0\t1\t2\n1\t3\t4\n", "t.mot")
+    assert "line 5: inDegrees=" in refusal(path)
+    assert "allowed: yes or no" in refusal(path)
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        ("nRows=1000", "nRows=1000, but there are 2"),
+        ("nRows=1_0", "nRows=1_0"),
+        ("nColumns=4", "nColumns=4, but there are 3"),
+    ],
+)
+def test_a_table_of_another_size_than_its_header_states_is_refused(tmp_path: Path, stated: str, said: str) -> None:
+    text = f"walk\n{stated}\ninDegrees=yes\nendheader\ntime\ta\tb\n0\t1\t2\n1\t3\t4\n"
+    assert said in refusal(written(tmp_path, text, "t.mot"))
+
+
+@pytest.mark.parametrize("cell", ["1_5", "\u0661\u0662"])
+def test_a_cell_is_a_number_in_digits_of_ascii(tmp_path: Path, cell: str) -> None:
+    assert "is not a number" in refusal(written(tmp_path, f"time,a\n0,{cell}\n1,2\n"))
+
+
 @pytest.mark.parametrize(("flag", "degrees"), [("yes", True), ("no", False), ("YES", True)])
 def test_storage_header_specifies_degrees_or_radians(tmp_path: Path, flag: str, degrees: bool) -> None:
     path = written(tmp_path, HEAD.format(flag=flag) + "time a b\n 0 1 2\n 1  3 4\n", "t.sto")

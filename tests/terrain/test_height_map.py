@@ -106,6 +106,7 @@ def test_a_scenario_names_it_relative_to_its_folder(tmp_path: Path) -> None:
         ("", "0 rows"),
         ("1,2\n3\n", r"row 2 has 1 numbers; allowed: 2"),
         ("1,x\n", r"row 1, column 2: x is not a number"),
+        ("1,1_5\n", r"row 1, column 2: 1_5 is not a number"),
         ("1,nan\n", r"row 1, column 2: nan is out of range"),
         ("0,0\n0,-inf\n", r"row 2, column 2: -inf is out of range"),
         ("0,5.1\n", rf"5.1 is out of range; allowed: heights from {-MAX_HEIGHT:g} to {MAX_HEIGHT:g} m"),
