@@ -23,6 +23,9 @@ UNIT_MISTAKES = {
 }
 """By required unit: factor by which a value is too large if given in the named unit."""
 
+FAR = 1.5
+"""Ratio to the largest allowed value above which a value is probably in another unit."""
+
 MESSAGE_LENGTH = 4000
 """Longest error message [characters]; the longest list of allowed fields fits."""
 
@@ -173,15 +176,29 @@ def require_in_range(name: str, value: float, unit: str, low: float, high: float
 
     The message suggests a fix; with `other_units` that may be a value in the unit that it was probably meant in.
     """
-    if math.isfinite(value) and low <= value <= high:
+
+    def refused(number: float) -> bool:
+        return not (math.isfinite(number) and low <= number <= high)
+
+    if not refused(value):
         return
     fix = _fix(value, unit if other_units else "", low, high)
-    raise ParameterError(f"{name}: {value:g} is out of range; allowed: {range_text(unit, low, high)}; {fix}")
+    shown = _digits(value, refused)
+    raise ParameterError(f"{name}: {shown} is out of range; allowed: {range_text(unit, low, high)}; {fix}")
 
 
 def range_text(unit: str, low: float, high: float) -> str:
-    """A range with its unit, for messages."""
-    return f"{low:g} to {high:g} {unit}".rstrip()
+    """A range with its unit, for messages; both ends are allowed as they are written."""
+    first, last = (_digits(end, lambda rounded: low <= rounded <= high) for end in (low, high))
+    return f"{first} to {last} {unit}".rstrip()
+
+
+def _digits(value: float, holds: Callable[[float], bool], digits: int = 6) -> str:
+    """A number rounded to so many digits, or to more until something holds for it that holds for the number."""
+    if isinstance(value, int):
+        return str(value)
+    texts = (f"{value:.{more}g}" for more in range(digits, 18))
+    return next(text for text in texts if holds(float(text)))
 
 
 def _fix(value: float, unit: str, low: float, high: float) -> str:
@@ -189,10 +206,11 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
         return "give a finite number"
     for factor, other_unit in UNIT_MISTAKES.get(unit, {}).items():
         # No one gives less than 1 of a smaller unit.
-        if low <= value / factor <= high and value > high and value >= 1.0:
-            return f"if it is in {other_unit}, write {value / factor:.4g} ({unit})"
-    nearest = low if value < low else high
-    return f"the nearest allowed value is {nearest:g}"
+        if low <= value / factor <= high and value > FAR * high and value >= 1.0:
+            converted = _digits(value / factor, lambda rounded: low <= rounded <= high, 4)
+            return f"if it is in {other_unit}, write {converted} ({unit})"
+    nearest = _digits(low if value < low else high, lambda rounded: low <= rounded <= high)
+    return f"the nearest allowed value is {nearest}"
 
 
 def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Metadata]]:

@@ -1,10 +1,11 @@
 """Errors of one line: field, value, allowed range, fix."""
 
 import math
+import re
 from dataclasses import dataclass, field
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from pydrake.multibody.tree import UniformGravityFieldElement
 
@@ -53,6 +54,34 @@ def test_every_value_beyond_the_range_is_refused(value: float) -> None:
 def test_the_message_has_field_value_range_and_fix_on_one_line() -> None:
     message = message_of(Leaf(length=2.0))
     assert message == "length: 2 is out of range; allowed: 0.1 to 1 m; the nearest allowed value is 1"
+
+
+def test_an_error_does_not_contradict_itself_where_a_value_is_close_to_the_limit() -> None:
+    with pytest.raises(ParameterError) as caught:
+        require_in_range("duration", 3600.001, "s", 0.001, 3600.0)
+    assert str(caught.value) == (
+        "duration: 3600.001 is out of range; allowed: 0.001 to 3600 s; the nearest allowed value is 3600"
+    )
+
+
+def test_whole_numbers_are_written_whole() -> None:
+    with pytest.raises(ParameterError) as caught:
+        require_in_range("seed", 4294970000, "", 0, 2**32 - 1)
+    assert str(caught.value) == (
+        "seed: 4294970000 is out of range; allowed: 0 to 4294967295; the nearest allowed value is 4294967295"
+    )
+
+
+@given(st.floats(-1e9, 1e9), st.floats(0.0, 1e9), st.floats(allow_nan=False, allow_infinity=False))
+def test_numbers_in_an_error_are_on_the_side_of_the_limit_that_it_says(low: float, size: float, value: float) -> None:
+    assume(low + size > low and not low <= value <= low + size)
+    with pytest.raises(ParameterError) as caught:
+        require_in_range("x", value, "", low, low + size)
+    numbers = re.fullmatch(r"x: (\S+) is .*; allowed: (\S+) to (\S+); the nearest .* is (\S+)", str(caught.value))
+    assert numbers is not None
+    shown, *allowed = map(float, numbers.groups())
+    assert not low <= shown <= low + size
+    assert all(low <= number <= low + size for number in allowed)
 
 
 def test_the_fix_for_a_value_below_the_range_is_its_lower_end() -> None:
