@@ -1,11 +1,13 @@
 """Serves the replay page of a run to browsers on this machine."""
 
+import sys
 import threading
 import webbrowser
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -71,7 +73,14 @@ def local_server(
         policy: Content-Security-Policy of all of them.
         port: 0 for a free one.
     """
-    return ThreadingHTTPServer((LOCALHOST, port), partial(_Handler, contents, policy))
+    return _Server((LOCALHOST, port), partial(_Handler, contents, policy))
+
+
+class _Server(ThreadingHTTPServer):
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Print nothing where a browser has closed the connection: it does so at will."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):

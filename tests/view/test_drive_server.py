@@ -1,6 +1,7 @@
 """The page of a driven walk: served on this machine only, with figures that follow the walk."""
 
 import json
+import socket
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ import pytest
 from humanwalk.quantity import ParameterError
 from humanwalk.view.drive_page import START
 from humanwalk.view.drive_server import Status, drive_html, drive_policy, served_drive
+from humanwalk.view.serve import LOCALHOST, local_server
 
 MESHCAT = "http://localhost:7123"
 
@@ -50,6 +52,22 @@ def test_it_is_served_on_this_machine_only_and_under_its_own_name(url: str) -> N
             urllib.request.urlopen(urllib.request.Request(url, headers={"Host": host}))
         assert error.value.code == 421
         error.value.close()
+
+
+@pytest.mark.parametrize(
+    ("error", "said"), [(ConnectionResetError(), ""), (BrokenPipeError(), ""), (ValueError("a defect"), "a defect")]
+)
+def test_a_browser_may_close_its_connection_at_any_time(
+    error: Exception, said: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with local_server({}, "") as server, socket.socket() as request:
+        try:
+            raise error
+        except (ConnectionError, ValueError):
+            server.handle_error(request, (LOCALHOST, 1))
+    errors = capfd.readouterr().err
+    assert said in errors
+    assert bool(errors) == bool(said)
 
 
 def test_the_page_may_connect_to_its_own_meshcat_only() -> None:
