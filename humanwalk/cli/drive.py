@@ -11,7 +11,7 @@ from rich.console import Console
 from humanwalk.cli.walk import LOST, illustrate, run_folder, write_or_rescue
 from humanwalk.quantity import ParameterError
 from humanwalk.run.driven import require_drivable
-from humanwalk.run.folder import Run
+from humanwalk.run.folder import RUNS, Run
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.monitor import caught_signals
 from humanwalk.run.outcome import Outcome
@@ -66,11 +66,12 @@ def drive_and_write(
         if browser:
             # A text browser in this terminal does not return until it is closed.
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+        first = RUNS / NAME if output is None else output.absolute()
         ended = Ended.RESET
         try:
             while ended is not Ended.INTERRUPT:
-                wanted = output if output is None or not runs else output.with_name(f"{output.name}-{len(runs) + 1}")
-                ended, run = _drive_once(loaded, page, wanted, record, replay, plots, console, checkpoint_period)
+                wanted = None if runs else output
+                ended, run = _drive_once(loaded, page, wanted, first, record, replay, plots, console, checkpoint_period)
                 runs += [run] if run else []
                 if ended is Ended.WALK:
                     ended = wait_for_reset(page)
@@ -86,6 +87,7 @@ def _drive_once(
     scenario: Scenario,
     page: DrivePage,
     wanted: Path | None,
+    otherwise: Path,
     record: bool,
     replay: bool,
     plots: bool,
@@ -93,7 +95,7 @@ def _drive_once(
     checkpoint_period: float,
 ) -> tuple[Ended, Run | None]:
     recording = make_meshcat() if replay else None
-    with run_folder(wanted, NAME, scenario) as path:
+    with run_folder(wanted, otherwise, scenario) as path:
 
         def checkpoint(so_far: Outcome) -> None:
             # A disk that is full now may have space at the end.

@@ -19,7 +19,7 @@ from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import Run, claimed, new_run_folder, require_room
+from humanwalk.run.folder import RUNS, Run, claimed, new_run_folder, require_room
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.simulate import simulate
@@ -66,7 +66,7 @@ def walk_and_write(
     if shown is not None:
         console.print(f"live at {shown.web_url()}")
     try:
-        with run_folder(output, name, loaded) as path:
+        with run_folder(output, RUNS / name, loaded) as path:
             _simulate_and_write(loaded, name, path, recording, shown, checkpoint_period, console)
     except RuntimeError:
         if shown is None or not is_lost(shown):
@@ -87,13 +87,13 @@ def name_of(scenario: str) -> str:
 
 
 @contextmanager
-def run_folder(wanted: Path | None, name: str, scenario: Scenario) -> Iterator[Path]:
-    """The folder of a new run, claimed within the block; removed after it if nothing was written.
+def run_folder(wanted: Path | None, otherwise: Path, scenario: Scenario) -> Iterator[Path]:
+    """The folder of a new run, claimed within the block; removed after it if nothing was written; see `new_run_folder`.
 
     Raises:
         ParameterError: It is in use, cannot be made, or its disk is too full for the scenario.
     """
-    path, made = new_run_folder(wanted, name)
+    path, made = new_run_folder(wanted, otherwise)
     # A folder that another run has claimed meanwhile stays: the claim is outside the block that removes the folder.
     with claimed(path):
         try:

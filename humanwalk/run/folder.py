@@ -38,6 +38,9 @@ from humanwalk.scenario import Scenario, dump_scenario, load_scenario
 
 logger = logging.getLogger(__name__)
 
+RUNS = Path("runs")
+"""Folder of the runs for which no other is named."""
+
 SCENARIO = "scenario.yaml"
 SIGNALS = "signals.parquet"
 SUMMARY = "summary.json"
@@ -167,8 +170,12 @@ class Run:
         return require_inside(self.path, self.path / name)
 
 
-def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[Path]]:
-    """Make the folder of a new run: the wanted one, else runs/NAME, runs/NAME-2, and so on.
+def new_run_folder(wanted: Path | None, otherwise: Path) -> tuple[Path, list[Path]]:
+    """Make the folder of a new run.
+
+    Args:
+        wanted: A new or empty folder; None for the first free one of runs/walk, runs/walk-2, and so on.
+        otherwise: The first of those: runs/walk.
 
     Returns:
         The folder, and the folders that were made for it, innermost first.
@@ -187,7 +194,7 @@ def new_run_folder(wanted: Path | None, scenario_name: str) -> tuple[Path, list[
         return wanted, made
     number = 1
     while True:
-        path = Path("runs") / (scenario_name if number == 1 else f"{scenario_name}-{number}")
+        path = otherwise if number == 1 else otherwise.with_name(f"{otherwise.name}-{number}")
         parents = make_folder(path.parent)
         # Of two runs that start together only one makes the folder.
         with file_errors(path, WRITABLE), suppress(FileExistsError):

@@ -59,5 +59,5 @@ class Outcome:
             ParameterError: the folder holds files already, or cannot be written.
         """
         folder = Path(path)
-        new_run_folder(folder, name)
+        new_run_folder(folder, folder)
         return self.write(folder, name)

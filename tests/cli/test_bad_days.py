@@ -18,7 +18,7 @@ from humanwalk.cli.walk import write_or_rescue
 from humanwalk.control.pd_control import PdLaw
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, claimed, new_run_folder, require_room
+from humanwalk.run.folder import RUNS, SCENARIO, SIGNALS, SUMMARY, Run, claimed, new_run_folder, require_room
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
 from humanwalk.systems import inverse_kinematics_solver, whole_body_controller
@@ -72,7 +72,7 @@ def test_killed_run_leaves_its_last_checkpoint(tmp_path: Path) -> None:
     assert all(np.isfinite(run[name]).all() for name in run.signals.column_names)
     # What it left is not overwritten.
     with pytest.raises(ParameterError, match="holds files already"):
-        new_run_folder(tmp_path / "run", "thesis")
+        new_run_folder(tmp_path / "run", RUNS / "thesis")
 
 
 def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_run_killed_before_its_first_checkpoint_leaves_no_false_run(tmp_path: Pa
     with pytest.raises(ParameterError, match="no run"):
         Run.open(tmp_path / "run")
     # The claim went with the process.
-    folder, _ = new_run_folder(tmp_path / "run", "thesis")
+    folder, _ = new_run_folder(tmp_path / "run", RUNS / "thesis")
     with claimed(folder):
         pass
 
@@ -247,7 +247,7 @@ def test_of_two_runs_into_one_folder_one_is_refused(tmp_path: Path) -> None:
         refused = None
         while refused is None and first.poll() is None:
             try:
-                folder, _ = new_run_folder(tmp_path / "run", "thesis")
+                folder, _ = new_run_folder(tmp_path / "run", RUNS / "thesis")
                 with claimed(folder):
                     time.sleep(0.01)
             except ParameterError as error:
@@ -347,7 +347,7 @@ def test_name_that_files_cannot_have_is_refused_before_the_simulation(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ParameterError) as raised:
-        new_run_folder(tmp_path / name if wanted else None, name)
+        new_run_folder(tmp_path / name if wanted else None, RUNS / name)
     assert str(raised.value).isprintable()
 
 
@@ -358,7 +358,7 @@ def test_folder_that_may_not_be_written_is_refused_before_the_simulation(tmp_pat
     if os.geteuid() == 0:
         folder = "/proc/humanwalk"  # type: ignore[assignment]
     with pytest.raises(ParameterError) as raised:
-        new_run_folder(type(tmp_path)(folder) / "run", "thesis")
+        new_run_folder(type(tmp_path)(folder) / "run", RUNS / "thesis")
     assert len(str(raised.value).splitlines()) == 1
     assert "that you may write to" in str(raised.value)
 

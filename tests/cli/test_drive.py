@@ -57,12 +57,12 @@ def drive(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, interruptible: None) 
 
     monkeypatch.setattr(module, "DrivePage", ScriptedPage)
 
-    def run(scenario: str = "thesis", overrides: dict[str, str] | None = None) -> Any:
+    def run(scenario: str = "thesis", overrides: dict[str, str] | None = None, output: Path | None = None) -> Any:
         options: dict[str, Any] = {"browser": False, "port": 0, "record": True, "replay": False, "plots": False}
         return drive_and_write(
             scenario,
             {"duration": "5", **(overrides or {})},
-            tmp_path / "driven",
+            output or tmp_path / "driven",
             console=Console(quiet=True),
             **options,
         )
@@ -77,6 +77,19 @@ def test_every_walk_that_is_recorded_becomes_a_run(drive: Any, tmp_path: Path) -
     assert [run.summary["end"] for run in (first, last)] == ["completed", "completed"]
     assert [len(run.scenario.pushes.given) for run in (first, last)] == [1, 0]
     assert reproduce(first).bits_agree
+
+
+def test_the_runs_after_the_first_take_the_next_free_names(
+    drive: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = tmp_path / "here"
+    here.mkdir()
+    (tmp_path / "here-2").mkdir()
+    (tmp_path / "here-2" / "mine").touch()
+    monkeypatch.chdir(here)
+    first, last = drive(output=Path())
+    assert (first.path.absolute(), last.path.name) == (here, "here-3")
+    assert [path.name for path in (tmp_path / "here-2").iterdir()] == ["mine"]
 
 
 def test_a_page_that_is_lost_ends_driving_and_every_walk_is_kept(

@@ -9,7 +9,7 @@ import pytest
 
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder
+from humanwalk.run.folder import RUNS, SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
@@ -73,29 +73,29 @@ def test_missing_folder_is_no_run(tmp_path: Path) -> None:
 
 def test_new_folders_are_numbered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    names = [new_run_folder(None, "thesis")[0].name for _ in range(3)]
+    names = [new_run_folder(None, RUNS / "thesis")[0].name for _ in range(3)]
     assert names == ["thesis", "thesis-2", "thesis-3"]
     assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == names
-    assert new_run_folder(None, "other")[0].name == "other"
+    assert new_run_folder(None, RUNS / "other")[0].name == "other"
 
 
 def test_a_file_in_the_way_is_not_overwritten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "runs").mkdir()
     (tmp_path / "runs" / "thesis").write_text("mine")
-    assert new_run_folder(None, "thesis")[0].name == "thesis-2"
+    assert new_run_folder(None, RUNS / "thesis")[0].name == "thesis-2"
 
 
 def test_wanted_folder_may_be_new_or_empty(tmp_path: Path) -> None:
     wanted = tmp_path / "a" / "b"
-    assert new_run_folder(wanted, "thesis") == (wanted, [wanted, wanted.parent])
-    assert new_run_folder(wanted, "thesis") == (wanted, [])
+    assert new_run_folder(wanted, RUNS / "thesis") == (wanted, [wanted, wanted.parent])
+    assert new_run_folder(wanted, RUNS / "thesis") == (wanted, [])
 
 
 def test_wanted_folder_that_holds_something_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ParameterError, match="holds files already") as raised:
-        new_run_folder(tmp_path, "thesis")
+        new_run_folder(tmp_path, RUNS / "thesis")
     assert len(str(raised.value).splitlines()) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
@@ -103,5 +103,5 @@ def test_wanted_folder_that_holds_something_is_refused(tmp_path: Path) -> None:
 def test_wanted_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x")
     with pytest.raises(ParameterError):
-        new_run_folder(tmp_path / "mine", "thesis")
+        new_run_folder(tmp_path / "mine", RUNS / "thesis")
     assert (tmp_path / "mine").read_text() == "x"
