@@ -7,6 +7,7 @@ import copy
 import dataclasses
 import functools
 import math
+import textwrap
 import typing
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
@@ -32,7 +33,9 @@ def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> No
     Raises:
         ParameterError: the text is not YAML, or the field cannot be replaced.
     """
-    replace_value(kind, data, field, read_yaml(f"value: {text}", f"--set {field}")["value"])
+    # Indented, so that no line of the text begins another field.
+    value = read_yaml("value: " + textwrap.indent(text, " "), f"--set {field}")["value"]
+    replace_value(kind, data, field, value)
 
 
 def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> None:

@@ -546,3 +546,11 @@ def test_same_key_in_two_groups_is_no_doubling() -> None:
         f"_a: &a {{time: 1.0}}\n_b: *a\ncontroller: {{balanced: {{command: {{points: {points}}}}}}}\n"
     )
     assert len(scenario.controller.command.points) == 2
+
+
+def test_the_text_of_an_override_holds_one_value_and_no_other_field() -> None:
+    for text in ("0.02\nseed: 3", "0.02\n_seed: 3", "0.02\n...\nseed: 3"):
+        with pytest.raises(ParameterError, match=r"^--set duration: not YAML at line"):
+            load_scenario("thesis", {"duration": text})
+    loaded = load_scenario("walk", {"pushes.given": "\n- time: 1.0\n- time: 2.0\n"})
+    assert [push.time for push in loaded.pushes.given] == [1.0, 2.0]

@@ -11,7 +11,7 @@ from typing import Any
 from humanwalk.body.devices import DEVICES
 from humanwalk.body.impairments import IMPAIRMENTS
 from humanwalk.body.loads import LOADS
-from humanwalk.quantity import ParameterError, did_you_mean, printable
+from humanwalk.quantity import ParameterError, did_you_mean, printable, require_in_range
 from humanwalk.terrain import PIECES, TERRAINS
 from humanwalk.walking.push import Push
 
@@ -31,7 +31,7 @@ PART_GRAMMAR = "{} [right | left | both] [[FIELD] VALUE [UNIT], ...] [unknown]"
 BEARINGS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
 """Where a push comes from, for a walker that faces x: angle from x to the left [deg]."""
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 
 PUSH = re.compile(
     rf"(?P<impulse>{NUMBER}) \s* N[\s*·]*s"
@@ -94,6 +94,7 @@ def push_of(text: str) -> Push:
             f'"{PUSH_EXAMPLE}"'
         )
     bearing = BEARINGS[found["side"]] if found["side"] else float(found["angle"])
+    require_in_range(f"--push {printable(text)}: from", bearing, "deg", -360.0, 360.0)
     # The force points away from where it comes from.
     direction = math.remainder(math.radians(bearing + 180.0), 2.0 * math.pi)
     numbers = {name: float(found[name]) for name in ("impulse", "time", "duration") if found[name]}
@@ -168,10 +169,11 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     first = next(name for name in (*own, *known) if "unit" in known[name].metadata)
     fields: dict[str, Any] = {}
     for item in words[len(tag) :].split(","):
-        said = dict(WORDS[word] for word in item.split() if word in WORDS)
-        fields |= said
+        said = [WORDS[word] for word in item.split() if word in WORDS]
+        for name, value in said:
+            _say(fields, name, value, f"{option} {text}")
         rest = " ".join(word for word in item.split() if word not in WORDS)
-        if not rest or rest in said:
+        if not rest or rest in dict(said):
             continue
         found = PART.fullmatch(rest)
         name = "_".join(found["name"].split()) if found else ""
@@ -185,16 +187,28 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
         unit = known[name].metadata.get("unit", "")
         factors, written = UNITS.get(unit, {unit: 1.0}), (found["unit"] or "").strip() or unit
         if found["word"]:
-            fields[name] = found["word"]
+            _say(fields, name, found["word"], f"{option} {text}")
         elif written in factors:
             value = float(found["number"]) * factors[written]
-            fields[name] = int(value) if not unit and value.is_integer() else value
+            whole = not unit and value.is_integer()
+            _say(fields, name, int(value) if whole else value, f"{option} {text}")
         else:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
                 f"{' or '.join(factors)}; write one of them"
             )
     return {tag: fields}
+
+
+def _say(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
+    """Give a field its value.
+
+    Raises:
+        ParameterError: it has one.
+    """
+    if name in fields:
+        raise ParameterError(f"{printable(where)}: {name} is said twice; allowed: every field once; remove one")
+    fields[name] = value
 
 
 def _kind_of(text: str, kinds: Mapping[str, type[Any]]) -> str:
@@ -220,7 +234,10 @@ def terrain_overrides(text: str) -> dict[str, str]:
         if not after_tag:
             raise _terrain_error(text, f"no such terrain{did_you_mean(tag, (*TERRAINS, *PIECES))}")
         tag, after_tag = "", first
-    fields = dict(_field(item, text) for item in (after_tag, *others) if item.strip())
+    fields: dict[str, tuple[Any, str]] = {}
+    for item in (after_tag, *others):
+        if item.strip():
+            _say(fields, *_field(item, text), f"--terrain {text}")
     tag = tag or _terrain_with(fields, text)
     known = _fields(TERRAINS[tag])
     for name in fields:

@@ -79,6 +79,28 @@ def test_another_text_is_refused_with_the_grammar(text: str) -> None:
         push_of(text)
 
 
+@pytest.mark.parametrize("angle", ["1e999", "1e308", "-360.5"])
+def test_an_angle_of_more_than_a_turn_is_refused(angle: str) -> None:
+    with pytest.raises(ParameterError, match=r"from: .* is out of range; allowed: -360 to 360 deg"):
+        push_of(f"30 N s at 1 s from {angle} deg")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"impairment": ["short leg left right 3 cm"]},
+        {"impairment": ["short leg 3 cm, 5 cm"]},
+        {"device": ["ankle prosthesis left, side right"]},
+        {"terrain": "stairs up down"},
+        {"terrain": "stairs 17 cm, rise 18 cm"},
+        {"terrain": "plane slope 3 deg, slope 5 deg"},
+    ],
+)
+def test_a_field_that_is_said_twice_is_refused(change: dict[str, Any]) -> None:
+    with pytest.raises(ParameterError, match=r"(side|length|direction|rise|slope|shortening|difference) is said twice"):
+        changed(**change)
+
+
 def test_pushes_replace_those_of_the_scenario() -> None:
     texts = ["60 N s at 8 s from behind", "30 N s at 9 s from the right"]
     assert changed("push", push=texts).pushes.given == tuple(push_of(text) for text in texts)
