@@ -95,6 +95,16 @@ def file_of(folder: Path, name: str, kind: str, command: str) -> Path:
     return path
 
 
+def require_new(path: Path, overwrite: bool) -> None:
+    """Raise ParameterError for a file of the user that is there already, unless it may be replaced."""
+    with file_errors(path, WRITABLE):
+        found = path.is_file()
+    if found and not overwrite:
+        raise ParameterError(
+            f"-o {printable(path)}: is there already; allowed: a new file, or any with --overwrite; choose another name"
+        )
+
+
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a file beside `path`, then put it in place; a failure leaves what was there before.
 

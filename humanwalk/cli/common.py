@@ -90,6 +90,8 @@ LookOption = Annotated[
     str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
 ]
 
+OverwriteOption = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there already.")]
+
 
 def require_look(look: str) -> None:
     """Raise ParameterError for an unknown look."""

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.common import SHOW, app, console, stdout
+from humanwalk.cli.common import SHOW, OverwriteOption, app, console, stdout
+from humanwalk.files import require_new
 
 
 @app.command(
@@ -14,8 +15,11 @@ from humanwalk.cli.common import SHOW, app, console, stdout
 )
 def compare(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Folders of two to eight runs.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Page to write.")] = Path("comparison.html"),
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Page to write. Default: comparison.html, which is replaced.")
+    ] = None,
     page: Annotated[bool, typer.Option(help="Write the page.")] = True,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Compare runs: measures side by side, overlaid curves, and what differs between their scenarios."""
     from rich import box
@@ -24,6 +28,9 @@ def compare(
     from humanwalk.run.folder import Run
     from humanwalk.view.compare import difference_rows, falls, measure_rows, names_of, write_comparison
 
+    if page and output is not None:
+        require_new(output, overwrite)
+    path = output or Path("comparison.html")
     opened = [Run.open(run) for run in runs]
     names = names_of(opened)
     for title, rows in (("measure", measure_rows(opened)), ("different field", difference_rows(opened))):
@@ -37,5 +44,5 @@ def compare(
         stdout.print(line, soft_wrap=True)
     if page:
         with console.status("drawing"):
-            write_comparison(output, opened)
-        console.print(f"{output}", soft_wrap=True)
+            write_comparison(path, opened)
+        console.print(f"{path}", soft_wrap=True)

@@ -10,6 +10,7 @@ from humanwalk.cli.common import (
     INSPECT,
     INTERRUPTED,
     LookOption,
+    OverwriteOption,
     ScenarioArgument,
     app,
     console,
@@ -17,6 +18,7 @@ from humanwalk.cli.common import (
     require_look,
     stdout,
 )
+from humanwalk.files import WRITABLE, file_errors, require_new
 from humanwalk.quantity import ParameterError, tag_of
 
 if TYPE_CHECKING:
@@ -37,6 +39,7 @@ def model(
         typer.Option("--output", "-o", help="File to write; .sdf, .urdf, .xml (MJCF) or .osim by its suffix."),
     ] = None,
     look: LookOption = "person",
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Print the segments of a scenario's subject beside the tables, and write its model.
 
@@ -50,6 +53,8 @@ def model(
     from humanwalk.scenario import load_scenario
 
     require_look(look)
+    if output is not None:
+        require_new(output, overwrite)
     subject = load_scenario(scenario, changes.overrides(scenario)).subject
     skeleton = subject.skeleton
     if output is not None:
@@ -76,12 +81,14 @@ def diagram(
     scenario: ScenarioArgument = "thesis",
     depth: Annotated[int, typer.Option(min=0, max=5, help="Number of levels of diagrams to expand.")] = 1,
     every_port: Annotated[bool, typer.Option("--every-port", help="Also draw unconnected ports.")] = False,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Draw the block diagram of a scenario's systems."""
     from humanwalk.diagrams.walker import make_diagram
     from humanwalk.scenario import load_scenario
     from humanwalk.view.diagram_picture import draw_diagram
 
+    require_new(output, overwrite)
     draw_diagram(make_diagram(load_scenario(scenario, changes.overrides(scenario))), output, depth, every_port)
     console.print(f"{output}", soft_wrap=True)
 
@@ -99,6 +106,7 @@ def bench(
     json_file: Annotated[
         Path | None, typer.Option("--output", "-o", help="JSON file to write, updated after every repeat.")
     ] = None,
+    overwrite: OverwriteOption = False,
     set_: SetOption = [],  # noqa: B006
     compare: Annotated[
         tuple[Path, Path] | None, typer.Option(metavar="OLD NEW", help="Compare two JSON files instead of measuring.")
@@ -112,8 +120,14 @@ def bench(
     if compare is not None:
         stdout.print(comparison_table(*map(read_result, compare)))
         return
-    if json_file is not None and not json_file.parent.is_dir():
-        raise ParameterError(f"--output {json_file}: no such folder; allowed: a file in an existing folder; make it")
+    if json_file is not None:
+        with file_errors(json_file, WRITABLE):
+            found_folder = json_file.parent.is_dir()
+        if not found_folder:
+            raise ParameterError(
+                f"--output {json_file}: no such folder; allowed: a file in an existing folder; make it"
+            )
+        require_new(json_file, overwrite)
     overrides = {"duration": repr(duration)} | overrides_of(set_)
     found: BenchResult | None = None
     with counted_progress("repeats") as progress:

@@ -7,22 +7,13 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.common import INTERRUPTED, SHOW, app, console, counted_progress, stdout
-from humanwalk.quantity import ParameterError
+from humanwalk.cli.common import INTERRUPTED, SHOW, OverwriteOption, app, console, counted_progress, stdout
+from humanwalk.files import require_new
 
 RunArgument = Annotated[Path, typer.Argument(help="Folder of a run.")]
 ViewOption = Annotated[
     str, typer.Option(help="follow, side (from the right), front, above, or orbit (around the walker).")
 ]
-OverwriteOption = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there already.")]
-
-
-def require_new(output: Path, overwrite: bool) -> None:
-    """Raise ParameterError for a file that is there already, unless it may be replaced."""
-    if output.is_file() and not overwrite:
-        raise ParameterError(
-            f"-o {output}: is there already; allowed: a new file, or any with --overwrite; choose another name"
-        )
 
 
 @app.command(
@@ -170,10 +161,11 @@ def export(
         Path | None,
         typer.Option("--output", "-o", help="Folder to write into. Default: one in the run's, named by the format."),
     ] = None,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Write a run for another program: OpenSim, motion-capture software, a spreadsheet, MATLAB."""
     from humanwalk.exchange import export_run
     from humanwalk.run.folder import Run
 
-    for path in export_run(Run.open(run), to, folder):
+    for path in export_run(Run.open(run), to, folder, overwrite=overwrite):
         console.print(f"{path}", soft_wrap=True)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.common import INSPECT, app, console
+from humanwalk.cli.common import INSPECT, OverwriteOption, app, console
 
 
 class FileKind(StrEnum):
@@ -28,14 +28,16 @@ def schema(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="JSON file to write. Default: print it.")
     ] = None,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Write the JSON Schema of a kind of file, with units and ranges: editors complete and check files with it."""
-    from humanwalk.files import write_text
+    from humanwalk.files import require_new, write_text
     from humanwalk.study.schemas import schema_of
 
     text = json.dumps(schema_of(kind), indent=1)
     if output is None:
         print(text)
         return
+    require_new(output, overwrite)
     write_text(output, text + "\n")
     console.print(f"{output}", soft_wrap=True)

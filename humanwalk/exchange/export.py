@@ -1,5 +1,6 @@
 """Writes a run in the formats of other programs."""
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from scipy.io import savemat
 
 from humanwalk.exchange.c3d import write_c3d
 from humanwalk.exchange.opensim import write_opensim
-from humanwalk.files import make_folder, write_whole
+from humanwalk.files import WRITABLE, file_errors, make_folder, require_new, write_whole
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import dump_scenario
@@ -57,17 +58,18 @@ FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
 """Formats by name: functions that write the files of a run into a folder and return their paths."""
 
 
-def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
-    """Write a run in a format into a folder, each file whole or not at all.
+def export_run(run: Run, to: str, output: Path | None = None, *, overwrite: bool = False) -> list[Path]:
+    """Write a run in a format into a folder, all files whole or none.
 
     Args:
         run: What to write.
         to: One of FORMATS.
-        output: Folder; by default one inside the run's, named by the format.
+        output: Folder; by default one inside the run's, named by the format, whose files are replaced.
+        overwrite: Whether files of `output` may be replaced.
 
     Raises:
-        ParameterError: Unknown format, a run without the required forces, a missing optional package, or a file that
-            cannot be written.
+        ParameterError: Unknown format, a run without the required forces, a missing optional package, or a file that is
+            there already or cannot be written.
     """
     if to not in FORMATS:
         raise ParameterError(f"--to {to}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
@@ -75,4 +77,10 @@ def export_run(run: Run, to: str, output: Path | None = None) -> list[Path]:
         run.require_physics()
     folder = run.subfolder(to) if output is None else output
     make_folder(folder)
-    return FORMATS[to](run, folder)
+    with file_errors(folder, WRITABLE), tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
+        written = {folder / file.name: file for file in FORMATS[to](run, Path(beside))}
+        for path in written:
+            require_new(path, overwrite or output is None)
+        for path, file in written.items():
+            file.replace(path)
+    return list(written)

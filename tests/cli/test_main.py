@@ -324,12 +324,27 @@ def test_folder_without_run_is_refused(refusal: Any, command: Any) -> None:
     assert "no run" in refusal(command, "none")
 
 
-@pytest.mark.parametrize("command", [("video",), ("snapshot", "--times", "0")])
-def test_a_picture_replaces_a_file_only_with_overwrite(refusal: Any, tmp_path: Path, command: Any) -> None:
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("video", "run"),
+        ("snapshot", "run", "--times", "0"),
+        ("compare", "run", "run"),
+        ("schema", "scenario"),
+        ("model", "none.yaml"),
+        ("diagram", "none.yaml"),
+        ("bench", "none.yaml"),
+    ],
+    ids=str,
+)
+def test_a_file_that_is_named_is_replaced_only_with_overwrite(
+    humanwalk: Any, refusal: Any, tmp_path: Path, command: Any
+) -> None:
     (tmp_path / "mine.mp4").write_text("holidays")
-    assert "mine.mp4: is there already" in refusal(*command, "run", "-o", "mine.mp4")
-    assert "no run" in refusal(*command, "run", "-o", "mine.mp4", "--overwrite")
+    assert "mine.mp4: is there already" in refusal(*command, "-o", "mine.mp4")
     assert (tmp_path / "mine.mp4").read_text() == "holidays"
+    _, _, errors = humanwalk(*command, "-o", "mine.mp4", "--overwrite")
+    assert "is there already" not in errors
 
 
 # bench.

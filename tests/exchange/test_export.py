@@ -264,6 +264,17 @@ def test_export_prints_its_files_and_writes_into_the_given_folder(run: Run, tmp_
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["signals.csv"]
 
 
+def test_files_of_another_are_replaced_only_with_overwrite(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "signals.csv").write_text("mine")
+    with pytest.raises(ParameterError, match=r"signals.csv: is there already; allowed: .* --overwrite"):
+        export_run(run, "csv", tmp_path)
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["mine"]
+    (written,) = export_run(run, "csv", tmp_path, overwrite=True)
+    assert written.read_text() != "mine"
+    # Those in the run's folder are our own.
+    assert export_run(run, "csv") == export_run(run, "csv")
+
+
 def test_unknown_format_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="allowed: opensim, c3d, csv, mat"):
         export_run(run, "opensm", tmp_path)
