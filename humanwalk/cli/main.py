@@ -50,11 +50,16 @@ def run_command() -> None:
             finally:
                 sys.stdout.flush()
         except (ParameterError, OSError) as error:
-            # Files are read and written by functions that raise ParameterError; what remains is standard output.
-            text = error if isinstance(error, ParameterError) else f"standard output: {error.strerror or error}"
+            text = error if isinstance(error, ParameterError) else _file_error(error)
             console.print(f"humanwalk: {printable(text, MAX_MESSAGE)}", style="red", highlight=False, soft_wrap=True)
             discard(sys.stdout)
             sys.exit(BAD_INPUT)
+
+
+def _file_error(error: OSError) -> str:
+    """An error of a file that no function has turned into a ParameterError: standard output has no name."""
+    name = "standard output" if error.filename is None else printable(error.filename)
+    return f"{name}: {error.strerror or error}"
 
 
 class _OneLine(logging.Formatter):

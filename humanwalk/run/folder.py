@@ -2,6 +2,7 @@
 
 import json
 import logging
+import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -48,6 +49,10 @@ REPLAY = "replay.html"
 PLOTS = "plots"
 """Names inside a run folder."""
 
+
+MAX_SUFFIX = 16
+"""Longest suffix of a file that its copy keeps [bytes]: with the field's name, a longer one makes no name of a file.
+Formats that are told by their suffix have shorter ones."""
 
 SIGNALS_BYTES_PER_ROW = 3000
 REPLAY_BYTES_PER_FRAME = 11_000
@@ -268,7 +273,9 @@ def _keep_files(path: Path, scenario: Scenario) -> Scenario:
     files = file_paths(scenario)
     names = {field: kept_name(field, file) for field, file in files.items()}
     for field, name in names.items():
-        if not (path / name).exists():
+        with file_errors(path, WRITABLE):
+            kept = (path / name).exists()
+        if not kept:
             # One that was moved during the simulation is missing in the run folder, unless a checkpoint has copied it.
             with suppress(ParameterError):
                 content = read_regular(Path(files[field]), MAX_FOLLOWED_BYTES)
@@ -277,5 +284,6 @@ def _keep_files(path: Path, scenario: Scenario) -> Scenario:
 
 
 def kept_name(field: str, file: str) -> str:
-    """Name in a run folder of the copy of a file that a field of the scenario names."""
-    return f"{field}{Path(file).suffix.lower()}"
+    """Name in a run folder of the copy of a file that a field of the scenario names; see `MAX_SUFFIX`."""
+    suffix = Path(file).suffix.lower()
+    return f"{field}{suffix if len(os.fsencode(suffix)) <= MAX_SUFFIX else ''}"

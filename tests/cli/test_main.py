@@ -1,5 +1,6 @@
 """The command line: files, output and errors."""
 
+import errno
 import json
 import os
 import re
@@ -345,6 +346,22 @@ def test_a_file_that_is_named_is_replaced_only_with_overwrite(
     assert (tmp_path / "mine.mp4").read_text() == "holidays"
     _, _, errors = humanwalk(*command, "-o", "mine.mp4", "--overwrite")
     assert "is there already" not in errors
+
+
+def test_an_error_of_a_file_is_not_one_of_standard_output(refusal: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*arguments: Any) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", "secret/x.mp4")
+
+    monkeypatch.setattr("humanwalk.run.folder.Run.open", fail)
+    assert "secret/x.mp4: Permission denied" in refusal("plot", "run")
+
+
+@pytest.mark.parametrize("command", [("video", "run"), ("snapshot", "run", "--times", "0"), ("bench", "stand")])
+def test_a_name_that_no_file_can_have_is_named_in_the_error(refusal: Any, command: Any) -> None:
+    name = 300 * "x" + ".mp4"
+    message = refusal(*command, "-o", name)
+    assert "standard output" not in message
+    assert "File name too long; allowed: a folder that you may write to" in message
 
 
 # bench.

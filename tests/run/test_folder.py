@@ -9,7 +9,7 @@ import pytest
 
 from humanwalk.measures.signals import TIME
 from humanwalk.quantity import ParameterError
-from humanwalk.run.folder import RUNS, SCENARIO, SIGNALS, SUMMARY, Run, new_run_folder
+from humanwalk.run.folder import RUNS, SCENARIO, SIGNALS, SUMMARY, Run, kept_name, new_run_folder
 from humanwalk.run.outcome import Outcome
 from humanwalk.scenario import load_scenario
 
@@ -48,6 +48,11 @@ def test_a_scenario_that_was_changed_since_the_run_is_read_with_one_warning(
     assert run.scenario.subject.mass == run.scenario.subject.mass == 140.0
     (record,) = caplog.records
     assert "scenario.yaml was changed since the run" in record.message
+
+
+def test_a_file_with_a_long_suffix_is_kept_under_a_name_that_a_file_can_have() -> None:
+    assert kept_name("controller.recorded.angles", "walk.MOT") == "controller.recorded.angles.mot"
+    assert kept_name("controller.recorded.mapping", "m." + 240 * "x") == "controller.recorded.mapping"
 
 
 def test_signals_know_where_they_come_from(outcome: Outcome, tmp_path: Path) -> None:
