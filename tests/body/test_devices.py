@@ -43,6 +43,13 @@ def test_a_prosthesis_has_its_own_masses_and_no_muscles() -> None:
         assert locked != (joint.stiffness > 0.0)
 
 
+def test_a_pylon_is_light_so_that_the_center_of_mass_is_nearer_to_the_knee() -> None:
+    shank = LEGS["Right"].shank
+    natural, pylon = (body.segment(shank).com for body in (human(), AnkleProsthesis().applied(human())))
+    assert pylon[:2] == natural[:2]
+    assert 0.0 > pylon[2] > 0.9 * natural[2]
+
+
 def test_the_ankle_of_a_prosthesis_is_a_spring_and_a_damper() -> None:
     ankle = AnkleProsthesis(stiffness=333.0, damping=4.0, rest_angle=0.05).applied(human()).joint(LEGS["Right"].ankle)
     assert (ankle.stiffness, ankle.damping, ankle.rest_angle) == (333.0, 4.0, 0.05)

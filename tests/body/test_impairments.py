@@ -103,6 +103,15 @@ def test_the_shorter_leg_ends_above_the_ground_and_the_rest_stays(person: str, s
     assert share == pytest.approx(1.0 - shortening / -healthy.joint(left.ankle).origin[2])
 
 
+def test_center_and_radii_of_gyration_of_a_shorter_shank_are_in_proportion_to_its_length() -> None:
+    """But not the radius about its length."""
+    shank, shortening = LEGS["Left"].shank, 0.05
+    healthy, short = human().segment(shank), ShortLeg(shortening, "Left").applied(human()).segment(shank)
+    ratio = 1.0 - shortening / -human().joint(LEGS["Left"].ankle).origin[2]
+    np.testing.assert_allclose(short.inertia / short.mass, healthy.inertia / healthy.mass * (ratio**2, ratio**2, 1.0))
+    np.testing.assert_allclose(short.com, np.multiply(healthy.com, (1.0, 1.0, ratio)))
+
+
 def test_two_short_legs_stand_on_the_ground() -> None:
     short = ShortLeg(0.03, "Left").applied(ShortLeg(0.02, "Right").applied(human()))
     assert short.raised == pytest.approx((0.0, 0.01))

@@ -74,6 +74,15 @@ def test_loads_are_where_they_are_carried(body: str) -> None:
     np.testing.assert_allclose(vest.origins[front.name][0], -vest.origins[back.name][0])
 
 
+@pytest.mark.parametrize(
+    "load", [Suitcase(9.0, depth=0.5, width=0.1, height=0.3), Backpack(9.0, depth=0.1, height=0.5)]
+)
+def test_a_load_has_the_inertia_of_a_box_with_its_edges(load: Suitcase | Backpack) -> None:
+    (part,) = (segment for segment in loaded(human(), [load]).segments if segment.name.startswith("Load_"))
+    x, y, z = np.square((load.depth, load.width, load.height))
+    np.testing.assert_allclose(part.inertia, load.mass / 12.0 * np.array((y + z, x + z, x + y)))
+
+
 @pytest.mark.parametrize("look", LOOKS)
 def test_every_part_of_a_load_is_drawn_in_every_look(look: Any) -> None:
     body = loaded(human(), EVERY)

@@ -12,9 +12,9 @@ from humanwalk.body import Skeleton, human
 from humanwalk.body.build import REGION_BODIES, mass_properties, person, standing_height
 from humanwalk.body.contact import contact_boxes, contact_spheres
 from humanwalk.body.de_leva import DE_LEVA, Sex
-from humanwalk.body.growth import ADULT_AGE, growth
+from humanwalk.body.growth import ADULT_AGE, MASS_SHARE, growth
 from humanwalk.body.loads import AnkleWeights, Backpack
-from humanwalk.body.regions import Regions, region_names, regions
+from humanwalk.body.regions import ARM, LEG, TRUNK, Regions, region_names, regions
 from humanwalk.body.segment_table import regions_of, segment_rows
 from humanwalk.body.subject import BODIES, Subject
 from humanwalk.quantity import ParameterError
@@ -39,6 +39,19 @@ def test_the_table_is_complete_and_adds_up(sex: Sex) -> None:
     rows = DE_LEVA[sex].rows
     assert set(rows) == {row for _, row in region_names()}
     assert math.fsum(rows[row].mass for _, row in region_names()) == pytest.approx(1.0, abs=2e-4)
+
+
+@pytest.mark.parametrize("sex", SEXES)
+def test_every_segment_of_the_table_is_a_solid_between_its_ends(sex: Sex) -> None:
+    """Limbs, moreover, are longest along their length."""
+    for name, row in DE_LEVA[sex].rows.items():
+        squares = np.square(row.gyration)
+        # Variances of the mass along x, y, z.
+        variances = 0.5 * squares.sum() - squares
+        along = 0 if name == "foot" else 2
+        assert (variances > 0.0).all(), name
+        assert variances[along] < row.com * (1.0 - row.com), name
+        assert along == variances.argmax() or name.endswith("trunk"), name
 
 
 @pytest.mark.parametrize("sex", SEXES)
@@ -197,6 +210,23 @@ def test_the_head_of_a_child_of_six_is_that_of_the_dummy() -> None:
     # Hip joints are above the seat by the same share of the stature.
     seat = adult.hip_height / adult.stature - (1.0 - 0.52)
     assert 1.0 - body.hip_height / body.stature + seat == pytest.approx(25.0 / 45.0, abs=0.01)
+
+
+def test_jensens_shares_of_mass_agree_with_the_dummy_of_six_years_and_with_de_levas_man() -> None:
+    """With this one where both cut the body nearly alike: head, trunk, and legs."""
+
+    def share(region: str, age: float) -> float:
+        return float(np.polynomial.polynomial.polyval(age, MASS_SHARE[region]))
+
+    assert share("head", 6.0) == pytest.approx(8.86 / 51.6, abs=1e-3)
+    rows = DE_LEVA["male"].rows
+    # Shank and foot have one share together.
+    legs = 2.0 * (share("thigh", ADULT_AGE) + share("shank", ADULT_AGE))
+    arms = 2.0 * math.fsum(share(region, ADULT_AGE) for region in ARM)
+    head = share("head", ADULT_AGE)
+    assert head == pytest.approx(rows["head"].mass, rel=0.02)
+    assert 1.0 - head - arms - legs == pytest.approx(math.fsum(rows[region].mass for region in TRUNK), rel=0.03)
+    assert legs == pytest.approx(2.0 * math.fsum(rows[region].mass for region in LEG), rel=0.11)
 
 
 # Refusals.
