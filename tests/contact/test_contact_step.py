@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,13 +41,14 @@ def step(
     R_WS: Any = None,
     origin: Array | tuple[float, float, float] = (0.0, 0.0, 0.0),
     steps: int = 1,
+    law: AsperityParameters = LAW,
 ) -> Contacts:
     """Contacts after some steps of a block on the terrain; depth and velocities in the surface frame at the origin."""
     R_WS = np.eye(3) if R_WS is None else R_WS
     p_WB = np.array([R_WS @ [0.0, 0.0, 0.05 - depth]]) + origin
     p_WQ, V = p_WB + R @ R_WS.T, (np.array(V, dtype=float).reshape(2, 3) @ R_WS.T).ravel()
     Z = mobility_factor(np.kron(np.eye(2), R_WS) @ mobility @ np.kron(np.eye(2), R_WS.T), 6)
-    contact_step, memory = ContactStep(LAW, terrain, AREA, h), ContactMemory.untouched(p_WQ, V)
+    contact_step, memory = ContactStep(law, terrain, AREA, h), ContactMemory.untouched(p_WQ, V)
     for _ in range(steps):
         contacts = contact_step(p_WB, p_WQ, V, memory, Z, 0.0)
         memory = contacts.memory
@@ -113,6 +115,14 @@ def test_each_point_has_the_friction_of_the_ground_below_it() -> None:
 def test_without_mobility_the_law_is_explicit() -> None:
     contacts = step(1e-4, [0, 0, 0, 0, 0, -0.01], np.zeros((6, 6)), h=1e-9)
     np.testing.assert_allclose(contacts.f_S[:, 2], 0.015 * (5e7 * 1e-4 + 4e5 * 0.01), rtol=1e-6)
+
+
+@pytest.mark.parametrize("rate", [-0.01, 0.01])
+def test_damping_is_reduced_by_its_separation_factor_at_points_that_rise(rate: float) -> None:
+    law = AsperityParameters(separation_damping=0.5)
+    contacts = step(1e-3, [0, 0, 0, 0, 0, rate], np.zeros((6, 6)), h=1e-9, law=law)
+    damping = law.normal_damping * (0.5 if rate > 0.0 else 1.0)
+    np.testing.assert_allclose(contacts.f_S[:, 2], AREA[0] * (law.normal_stiffness * 1e-3 - damping * rate), rtol=1e-6)
 
 
 @given(slope=SLOPES, speed=SPEEDS)

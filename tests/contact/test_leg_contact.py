@@ -2,10 +2,13 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 from pydrake.systems.framework import Diagram
 
 from humanwalk.body.limbs import LEGS
+from humanwalk.body.skeleton import Skeleton
+from humanwalk.contact.leg_contact import LEG_SET
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.scenario import load_scenario
 
@@ -47,6 +50,18 @@ def test_legs_that_cross_touch(diagram: Diagram) -> None:
     crossed = pairs(diagram, **CROSSED)
     assert crossed
     assert all({SIDE_OF[body] for body in pair} == {"Right", "Left"} for pair in crossed)
+
+
+def test_capsules_of_thighs_and_shanks_reach_from_joint_to_joint(diagram: Diagram, skeleton: Skeleton) -> None:
+    plant, inspector = diagram.GetSubsystemByName("plant"), diagram.GetSubsystemByName("scene_graph").model_inspector()
+    for leg in LEGS.values():
+        for body, after in ((leg.thigh, leg.shank), (leg.shank, leg.hindfoot)):
+            shapes = plant.GetCollisionGeometriesForBody(plant.GetBodyByName(body))
+            (capsule,) = [shape for shape in shapes if inspector.GetName(shape).endswith(LEG_SET)]
+            shape, X_BG = inspector.GetShape(capsule), inspector.GetPoseInFrame(capsule)
+            ends = [X_BG @ (0.0, 0.0, z * (0.5 * shape.length() + shape.radius())) for z in (-1.0, 1.0)]
+            joints = [np.zeros(3), skeleton.origins[after] - skeleton.origins[body]]
+            np.testing.assert_allclose(sorted(ends, key=lambda p: -p[2]), joints, atol=1e-9)
 
 
 def test_a_bent_leg_does_not_touch_itself(diagram: Diagram) -> None:
