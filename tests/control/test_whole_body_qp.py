@@ -1,26 +1,33 @@
-"""The whole-body program: Newton's laws, limits of friction and torque, terrain, and QP failures."""
+"""The whole-body program: Newton's laws, its tasks, limits of friction and torque, terrain, and QP failures."""
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pydrake.math import RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.devices import AnkleProsthesis
 from humanwalk.body.impairments import NO_TORQUE, JointImpairment, StiffKnee, WeakPlantarflexors
-from humanwalk.body.limbs import LEGS
+from humanwalk.body.limbs import ARMS, LEGS
 from humanwalk.body.plant import body_plant
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
-from humanwalk.control.whole_body_parameters import BallTwist, ForcePivot, WholeBodyParameters
+from humanwalk.control.whole_body_contacts import Soles
+from humanwalk.control.whole_body_parameters import BallTwist, ForcePivot, TaskGains, WholeBodyParameters
 from humanwalk.control.whole_body_qp import Posture, WholeBodyQp
-from humanwalk.control.whole_body_tasks import Task
+from humanwalk.control.whole_body_tasks import Task, tasks
 from humanwalk.numerics import Array
-from humanwalk.numerics.rotation import yaw_pitch
+from humanwalk.numerics.rotation import yaw_pitch, yaw_roll
+from humanwalk.quantity import GRAVITY
+from humanwalk.sides import SIDES, Side
 from humanwalk.terrain import Plane
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
@@ -416,6 +423,21 @@ def test_a_foot_on_its_ball_carries_a_limited_moment_about_the_vertical(
     assert turn * arm(qp) == pytest.approx(min(largest, abs(arm(unlimited))), abs=1e-5)
 
 
+def test_the_limited_moment_of_a_foot_is_about_the_mean_of_its_own_contact_points(
+    dynamics: BodyDynamics, qp: WholeBodyQp, skeleton: Skeleton
+) -> None:
+    """Although the other foot stands, too."""
+    body, arm = in_double_support(dynamics, skeleton), 0.01
+    on_ball = FootReference(FootTask.HEEL_OFF, 1.0, 0.0, pitch=ScalarMotion(0.25, 0.0, 0.0))
+    *_, contacts = qp.program(body, replace(reference_for(body), left=on_ball), rest(qp))
+    left = contacts.side == SIDES.index("Left")
+    assert left.any() and not left.all()
+    edge_forces = np.random.default_rng(0).uniform(0.0, 1.0, len(contacts.J_edges))
+    f, p = contacts.forces(edge_forces)[left], contacts.p_W[left]
+    moment, largest = np.cross(p - p.mean(axis=0), f)[:, 2].sum(), arm * f[:, 2].sum()
+    assert contacts.twist(arm) @ edge_forces == pytest.approx([moment - largest, -moment - largest])
+
+
 def test_the_moment_of_a_flat_foot_about_the_vertical_has_no_limit_but_friction(
     dynamics: BodyDynamics, skeleton: Skeleton
 ) -> None:
@@ -434,6 +456,16 @@ def test_a_style_accelerates_its_joint(dynamics: BodyDynamics, qp: WholeBodyQp, 
     wanted = qp.solve(body, reference_for(body), rest(qp)).acceleration[hip] + 1.0
     style = [Task(np.eye(body.v.size)[[hip]], np.array([wanted]), 1e4)]
     assert qp.solve(body, reference_for(body), rest(qp), style).acceleration[hip] == pytest.approx(wanted, abs=0.05)
+
+
+def test_swinging_arms_do_not_accelerate_the_center_of_mass(dynamics: BodyDynamics, qp: WholeBodyQp) -> None:
+    """Legs and trunk make up for joints with prescribed motion."""
+    body, posture = body_at(dynamics), rest(qp)
+    posture.angle[[qp.names.index(arm.shoulder_flexion) for arm in ARMS.values()]] = 0.5
+    still, swinging = (
+        body.com.J @ qp.solve(body, reference_for(body), wanted).acceleration for wanted in (rest(qp), posture)
+    )
+    assert swinging[:2] == pytest.approx(still[:2], abs=0.05)
 
 
 @pytest.mark.parametrize("load", [1.0, 0.5, 0.1])
@@ -493,6 +525,99 @@ def test_a_stance_foot_above_a_slope_moves_along_its_normal(dynamics: BodyDynami
     normal = terrain.axes(np.zeros(2))[2]
     assert normal @ acceleration < -1.0
     assert acceleration / np.linalg.norm(acceleration) == pytest.approx(-normal, abs=0.1)
+
+
+# ---- tasks, one at a time
+
+NO_TASK, SOME = TaskGains(0.0, 0.0, 0.0), TaskGains(100.0, 20.0, 1.0)
+NOTHING = replace(
+    PARAMETERS,
+    com_weight=0.0,
+    pressure_weight=0.0,
+    com_height=NO_TASK,
+    stance=NO_TASK,
+    heel_strike=NO_TASK,
+    heel_off=NO_TASK,
+    swing_position=NO_TASK,
+    swing_rotation=NO_TASK,
+    pelvis=NO_TASK,
+    chest=NO_TASK,
+)
+SWING = dict(swing_position=SOME, swing_rotation=SOME, swing_acceleration_limit=1e3)
+
+
+@pytest.fixture(scope="module")
+def soles(dynamics: BodyDynamics, skeleton: Skeleton) -> Soles:
+    return Soles.of(contact_spheres(skeleton), dynamics.bodies)
+
+
+def error(
+    body: Dynamics,
+    acceleration: Array,
+    reference: WalkingReference,
+    soles: Soles,
+    passive_ankles: tuple[Side, ...] = (),
+    **gains: Any,
+) -> Array:
+    """Desired minus actual accelerations of the tasks that have gains."""
+    J, desired, _ = tasks(body, soles.on(reference.ground, body), reference, replace(NOTHING, **gains), passive_ankles)
+    return desired - J @ acceleration
+
+
+@pytest.mark.parametrize(
+    ("gains", "passive_ankles"),
+    [(dict(com_weight=1.0, com_height=SOME), ()), (dict(heel_off=SOME), ()), (SWING, ()), (SWING, ("Right",))],
+    ids=["center of mass", "heel-off", "swing", "swing of a foot that the ankle does not turn"],
+)
+@settings(max_examples=10)
+@given(seed=st.integers(0, 1000))
+def test_a_stiff_body_that_pitches_and_translates_as_planned_has_no_error(
+    dynamics: BodyDynamics, soles: Soles, gains: dict[str, Any], passive_ankles: tuple[Side, ...], seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    pitch = ScalarMotion(*random.uniform(-1.0, 1.0, 3) * (0.4, 3.0, 20.0))
+    q, v, acceleration = body_at(dynamics).q.copy(), np.zeros(48), np.zeros(48)
+    q[:4] = np.cos(0.5 * pitch.value), 0.0, np.sin(0.5 * pitch.value), 0.0
+    v[1], v[3:6] = pitch.rate, random.uniform(-1.0, 1.0, 3)
+    acceleration[1], acceleration[3:6] = pitch.acceleration, random.uniform(-3.0, 3.0, 3)
+    body = dynamics.at(np.concatenate((q, v)))
+    com, ankle = body.com, body.frame(LEGS["Right"].hindfoot).point(np.zeros(3))
+    motions = [(p.position, p.velocity, p.J @ acceleration + p.bias) for p in (com, ankle)]
+    (level, height), (path, lift) = (
+        ([complex(*part[:2]) for part in motion], ScalarMotion(*(float(part[2]) for part in motion)))
+        for motion in motions
+    )
+    task = FootTask.HEEL_OFF if "heel_off" in gains else FootTask.SWING
+    foot = FootReference(task, 0.0, 0.0, position=PlanarMotion(*path), height=lift, pitch=pitch)
+    # The force on a pendulum passes through its pivot.
+    pivot = level[0] - level[2] * height.value / (GRAVITY + height.acceleration)
+    reference = replace(reference_for(body, right=foot), pivot=pivot, com_height=height)
+    np.testing.assert_allclose(error(body, acceleration, reference, soles, passive_ankles, **gains), 0.0, atol=1e-6)
+
+
+def test_a_pelvis_that_is_turned_and_rolled_as_planned_has_no_error(dynamics: BodyDynamics, soles: Soles) -> None:
+    yaw, roll = 0.4, -0.2
+    q = body_at(dynamics).q.copy()
+    q[:4] = RotationMatrix(yaw_roll(yaw, roll)).ToQuaternion().wxyz()
+    body = dynamics.at(np.concatenate((q, np.zeros(48))))
+    reference = replace(reference_for(body), pelvis_yaw=yaw, pelvis_roll=roll)
+    np.testing.assert_allclose(error(body, np.zeros(48), reference, soles, pelvis=SOME), 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("way", [0.0, 0.7, 1.57, -2.0])
+def test_a_swinging_foot_is_accelerated_to_a_far_foothold_by_the_limit_in_any_direction(
+    dynamics: BodyDynamics, soles: Soles, way: float
+) -> None:
+    body = body_at(dynamics)
+    x, y, z = body.frame(LEGS["Right"].hindfoot).p_WB.tolist()
+    path = PlanarMotion(complex(x, y) + cmath.rect(5.0, way))
+    foot = FootReference(FootTask.SWING, 0.0, 0.0, position=path, height=ScalarMotion(z))
+    desired = error(body, np.zeros(48), reference_for(body, right=foot), soles, swing_position=SOME)
+    limit = PARAMETERS.swing_acceleration_limit
+    assert desired == pytest.approx([limit * math.cos(way), limit * math.sin(way), 0.0], abs=1e-6)
+
+
+# ---- impairments
 
 
 def impaired(subject: Subject) -> tuple[BodyDynamics, WholeBodyQp]:
