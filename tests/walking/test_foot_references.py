@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -180,6 +181,15 @@ def test_the_swinging_foot_lands_at_the_height_of_its_foothold(ground: float) ->
     assert end.height.value == pytest.approx(ground + ANKLE - PARAMETERS.swing.landing_depth)
     assert end.pitch.value == pytest.approx(-0.25)
     assert end.toes == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("slope", [-0.2, 0.2])
+def test_the_swinging_foot_turns_from_the_face_that_it_left_to_that_of_its_foothold(slope: float) -> None:
+    inclined = LEVEL._replace(gradient=(slope, 0.0))
+    for start, goal in ((OLD, NEXT._replace(face=inclined)), (OLD._replace(face=inclined), NEXT)):
+        for elapsed, foothold in ((TIMING.double_support, start), (TIMING.step, goal)):
+            reference = swinging_foot(state_at(elapsed)._replace(right=start), swing_to(goal), 1.0)
+            np.testing.assert_allclose(reference.R_WS, foothold.R_WS, atol=1e-9)
 
 
 @given(st.floats(0.05, 0.95), st.floats(1.0, 1.8))

@@ -6,6 +6,7 @@ from typing import Any, Literal
 import pytest
 
 from humanwalk.body.contact import SoleExtent
+from humanwalk.sides import Side
 from humanwalk.terrain import Plane
 from humanwalk.terrain.course import Course
 from humanwalk.terrain.piece import Piece
@@ -84,6 +85,24 @@ def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured() -> No
     assert state.swing.motion[:2] == (0.01 - 0.1j, 0.4)
     height, pitch = (motion.time_scaled(1.0 / TIMING.single_support) for motion in state.swing.profile.at(0.0))
     assert (height.value, height.rate, pitch.value) == pytest.approx((0.1, 0.2, 0.3))
+
+
+@pytest.mark.parametrize("passive_ankles", [(), ("Right",), ("Left",)])
+def test_a_foot_without_muscles_at_the_ankle_lands_with_level_toes(passive_ankles: tuple[Side, ...]) -> None:
+    phases = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(), FOOTHOLDS, passive_ankles)
+    _, pitch = in_single_support(phases=phases).swing.profile.at(1.0)
+    toe_up = 0.0 if "Right" in passive_ankles else PARAMETERS.swing.touchdown_pitch(WALK.forward)
+    assert pitch.value == pytest.approx(-toe_up, abs=1e-9)
+
+
+@pytest.mark.parametrize("caution", [0.0, 0.5, 1.0])
+def test_a_foot_is_lifted_the_higher_the_more_careful_the_step(caution: float) -> None:
+    """It leaves the ground so steeply that its ankle is above the least clearance already."""
+    steep, before = replace(BODY, right=foot(-0.1j, height=ANKLE + 0.1)), in_single_support(phases=LEVEL)
+    before = before._replace(phase=Phase.DOUBLE_SUPPORT, elapsed=before.timing.double_support, caution=caution)
+    apex, _ = advance(LEVEL, before, steep, WALK).swing.profile.at(0.25)
+    lift = PARAMETERS.caution.lift_above(PARAMETERS.swing.lift, caution)
+    assert apex.value - steep.right.height == pytest.approx(lift)
 
 
 def test_early_contact_ends_the_swing_only_near_its_end() -> None:

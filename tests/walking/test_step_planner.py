@@ -27,6 +27,7 @@ from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, FootState, FootTask, Phase, WalkingReference
 
 PERIOD = 0.004
+COM_HEIGHT = 0.98
 ANKLE = 0.068
 LEG = 0.864
 PARAMETERS = StepPlannerParameters()
@@ -57,7 +58,7 @@ class Raised(Plane):
 def planner(
     terrain: Any = LEVEL, period: float = PERIOD, parameters: StepPlannerParameters = PARAMETERS
 ) -> StepPlanner:
-    return StepPlanner(parameters, 0.98, ANKLE, LEG, "Right", period, SOLE, terrain)
+    return StepPlanner(parameters, COM_HEIGHT, ANKLE, LEG, "Right", period, SOLE, terrain)
 
 
 def foot(position: Any, force: float = 350.0, **changes: Any) -> FootState:
@@ -103,6 +104,11 @@ def test_it_stands_while_nothing_is_commanded() -> None:
     for _, state, reference, _ in pendulum_walk(planner(), lambda time: Command(), 1.0):
         assert state.phase is Phase.STAND
         assert {reference.right.task, reference.left.task} == {FootTask.FLAT}
+
+
+def test_in_standing_the_center_of_mass_moves_to_its_height_of_standing() -> None:
+    *_, (_, _, reference, _) = pendulum_walk(planner(), lambda time: Command(), 4.0)
+    assert reference.com_height.value == pytest.approx(PARAMETERS.height.standing * COM_HEIGHT, abs=1e-3)
 
 
 def test_phases_follow_each_other_and_sides_alternate() -> None:
@@ -174,6 +180,16 @@ def test_it_stays_on_the_path_around_a_corner() -> None:
     command = lambda time: Command(0.4, 0.0, 0.4 if 3.0 < time < 6.9 else 0.0) if time > 0.2 else Command()  # noqa: E731
     for _, state, _, _ in pendulum_walk(planner(), command, 10.0):
         assert abs(state.path.nearest(state.midpoint, Command(0.4)).position - state.midpoint) < 0.03
+
+
+def test_the_pelvis_turns_with_the_leading_leg_and_drops_toward_the_swinging_one() -> None:
+    """And the chest turns against it. Turning to the left is positive, and so is a roll with the left side up."""
+    for time, _, reference, body in pendulum_walk(planner(), walk_at(1.0), 4.0):
+        left_ahead = (body.left.position - body.right.position).real
+        if time > 2.0 and abs(left_ahead) > 0.1:
+            assert left_ahead * reference.pelvis_yaw < 0.0 < left_ahead * reference.chest_yaw
+        if time > 2.0 and 0.3 < reference.phase_time / reference.step_duration < 0.7:
+            assert (reference.pelvis_roll > 0.0) == (reference.stance == "Left")
 
 
 def test_the_pelvis_turns_without_a_jump() -> None:
@@ -265,7 +281,7 @@ def test_the_pressure_under_a_passive_foot_is_where_its_spring_puts_it() -> None
     state, body = in_single_support()
     side, footholds = state.stance, []
     passive, healthy, other = (
-        StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
+        StepPlanner(PARAMETERS, COM_HEIGHT, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
         for passive_ankles in ((side,), (), (other_side(side),))
     )
     for ahead in (-0.05 - 0.02j, 0j, 0.05, 0.1 + 0.02j):
@@ -304,7 +320,7 @@ def test_the_force_on_an_unloading_foot_is_limited_unless_its_ankle_is_passive()
         if state.phase is Phase.DOUBLE_SUPPORT and state.elapsed > 0.0
     )
     for passive_ankles in ((), (state.stance,), (state.swing_side,)):
-        plan = StepPlanner(PARAMETERS, 0.98, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
+        plan = StepPlanner(PARAMETERS, COM_HEIGHT, ANKLE, LEG, "Right", PERIOD, SOLE, LEVEL, passive_ankles)
         force = plan.update(state, body, WALK)[1].foot(state.swing_side).force
         assert (force == math.inf) == (state.swing_side in passive_ankles)
 
