@@ -14,6 +14,7 @@ from humanwalk.body.limbs import PELVIS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
+from humanwalk.sides import SIDES
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.terrain import Plane
 from humanwalk.walking.walking_reference import BodyState
@@ -131,3 +132,31 @@ def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
         assert foot.pitch_rate == pytest.approx(0.0, abs=1e-9)
         np.testing.assert_allclose(foot.forward, R_WF[:, 0], atol=1e-9)
         np.testing.assert_allclose(foot.normal, R_WF[:, 2], atol=1e-9)
+
+
+@settings(max_examples=25)
+@given(rng=seeds)
+def test_velocities_of_the_ankles_are_the_rates_of_their_poses(
+    observer: BodyObserver, plant: MultibodyPlant, rng: np.random.Generator
+) -> None:
+    """In W, and of the feet relative to a plane."""
+    (q, v), terrain, h = random_state(plant, rng), Plane(slope=0.2, cross_slope=-0.1), 1e-6
+    q_rate = plant.MapVelocityToQDot(_at(plant, q), v)
+
+    def observed(q: Array) -> tuple[Array, BodyState]:
+        context = observer.CreateDefaultContext()
+        observer.GetInputPort("state").FixValue(context, np.concatenate((q, v)))
+        ankles = observer.GetOutputPort("ankles").Eval(context).reshape(2, 5, 3)
+        return ankles, BodyState.measured(np.zeros(6), ankles, np.zeros((2, 8)), terrain)
+
+    (ankles, body), (ahead, body_ahead), (behind, body_behind) = (observed(q + s * h * q_rate) for s in (0, 1, -1))
+    velocity, x, z, w = ankles[:, 1:].swapaxes(0, 1)
+    rates = ((ahead - behind) / (2 * h))[:, [0, 2, 3]].swapaxes(0, 1)
+    np.testing.assert_allclose((velocity, np.cross(w, x), np.cross(w, z)), rates, atol=1e-6)
+    for side in SIDES:
+        foot, earlier, later = (state.foot(side) for state in (body, body_behind, body_ahead))
+        for name, rate in (("position", "velocity"), ("height", "height_rate"), ("pitch", "pitch_rate")):
+            change = getattr(later, name) - getattr(earlier, name)
+            # Near the vertical the pitch has no rate.
+            if abs(foot.pitch) < 1.3 or name != "pitch":
+                assert getattr(foot, rate) == pytest.approx(change / (2 * h), abs=1e-5), name

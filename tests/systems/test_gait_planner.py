@@ -8,7 +8,9 @@ from pydrake.systems.framework import Context
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.body.hanging_arm import hanging_arms
+from humanwalk.body.limbs import other_side
 from humanwalk.body.subject import Subject
+from humanwalk.sides import SIDES, Side
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane
@@ -111,3 +113,18 @@ def test_evaluating_outputs_does_not_plan(planner: GaitPlanner, plant: Multibody
     first = planner.GetOutputPort("plan").Eval(context)
     planner.GetOutputPort("balance").Eval(context)
     assert planner.GetOutputPort("plan").Eval(context) is first
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_an_arm_with_a_load_in_its_hand_swings_less(planner: GaitPlanner, plant: MultibodyPlant, side: Side) -> None:
+    """The left foot is ahead; the load is felt as far aside as the shoulder."""
+    simulator = simulator_of(planner, plant, (0, 0, 0))
+    context, arm = simulator.get_mutable_context(), hanging_arms(Subject())[side]
+    ankles = planner.GetInputPort("ankles").Eval(context).reshape(2, 5, 3).copy()
+    ankles[SIDES.index("Left"), 0, 0] += 0.2
+    planner.GetInputPort("ankles").FixValue(context, ankles.ravel())
+    planner.GetInputPort("load").FixValue(context, np.array((5.0, 0.0, arm.aside, -0.3)))
+    simulator.AdvanceTo(1.5 * PERIOD)
+    flexion = planner.GetOutputPort("plan").Eval(context).shoulder_flexion
+    swing = {side: abs(angle) for side, (angle, _) in zip(SIDES, flexion, strict=True)}
+    assert 0.0 < swing[side] < swing[other_side(side)]

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
-from humanwalk.body.limbs import PELVIS
+from humanwalk.body.limbs import CHEST, PELVIS
 from humanwalk.control.felt_load import LoadFeeling
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
@@ -106,3 +106,27 @@ def test_a_load_is_felt_with_the_time_constant(observer: LoadObserver, plant: Mu
     )
     assert early == pytest.approx(20.0 * (1.0 - np.exp(-1.0)), rel=0.05)
     assert late == pytest.approx(20.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("acceleration", [(1.0, -0.5, 0.5), (-2.0, 1.0, -0.5)])
+def test_a_body_that_the_ground_accelerates_as_a_whole_carries_only_its_load(
+    observer: LoadObserver, plant: MultibodyPlant, acceleration: tuple[float, float, float]
+) -> None:
+    """One foot carries the load, which is above the center of mass, the force on the other passes through this."""
+    state, com = turned(plant, 0.0)
+    body, mass = plant.CalcTotalMass(plant.CreateDefaultContext()), 15.0
+    force = body * np.add(acceleration, (0.0, 0.0, GRAVITY))
+    feet = np.zeros((2, 8))
+    feet[0, :3], feet[0, 3:6] = force, com - force * com[2] / force[2]
+    feet[1, 2], feet[1, 3:5] = mass * GRAVITY, com[:2]
+    context = observer.CreateDefaultContext()
+    observer.GetInputPort("foot_forces").FixValue(context, feet.ravel())
+    velocity = slice(plant.num_positions() + 3, plant.num_positions() + 6)
+    for k in range(round(10.0 * FEELING.time_constant / PERIOD)):
+        state[velocity] = k * PERIOD * np.array(acceleration)
+        observer.GetInputPort("state").FixValue(context, state)
+        context.SetDiscreteState(observer.EvalUniquePeriodicDiscreteUpdate(context))
+    load = observer.GetOutputPort("load").Eval(context)
+    assert load[0] == pytest.approx(mass, rel=1e-3)
+    standing = plant.CreateDefaultContext()
+    np.testing.assert_allclose(plant.GetFrameByName(CHEST).CalcPoseInWorld(standing) @ load[1:], com, atol=1e-3)

@@ -13,8 +13,9 @@ from humanwalk.body.limbs import ARMS, HEAD_YAW, LEGS
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
+from humanwalk.sides import SIDES, Side
 from humanwalk.systems.body_observer import BodyObserver
-from humanwalk.systems.whole_body_controller import WholeBodyController
+from humanwalk.systems.whole_body_controller import ELBOW_PER_SHOULDER, WholeBodyController
 from humanwalk.terrain import Plane
 from humanwalk.walking.command import Command
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -93,6 +94,45 @@ def test_arms_move_toward_their_posture(
     rates = controller.GetOutputPort("desired_state").Eval(context)[42:]
     assert rates[joints.names.index(ARMS["Left"].elbow)] > 0.0
     assert rates[joints.names.index(ARMS["Right"].elbow)] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_each_arm_and_each_foot_follow_the_plan_of_their_side(
+    controller: WholeBodyController, joints: JointMap, standing: Array, plan: WalkingReference, side: Side
+) -> None:
+    """Arms have prescribed accelerations: from rest they have the rate of the first period."""
+    swing, none, toes = (0.2, 0.0), (0.0, 0.0), (0.3, 0.5)
+    arms = (swing, none) if side == "Right" else (none, swing)
+    foot = {side.lower(): replace(plan.foot(side), toes=toes)}
+    angles, rates = [], []
+    for planned in (plan, replace(plan, shoulder_flexion=arms, **foot)):  # type: ignore[arg-type]
+        context = context_with(controller, standing, planned)
+        updated(controller, context)
+        angle, rate = np.split(controller.GetOutputPort("desired_state").Eval(context), 2)
+        angles.append(dict(zip(joints.names, angle, strict=True)))
+        rates.append(dict(zip(joints.names, rate, strict=True)))
+    per_angle = PERIOD * WholeBodyParameters().arms.stiffness
+    flexion = {ARMS[side].shoulder_flexion: swing[0], ARMS[side].elbow: ELBOW_PER_SHOULDER * swing[0]}
+    for arm in ARMS.values():
+        for joint in (arm.shoulder_flexion, arm.elbow):
+            assert rates[1][joint] - rates[0][joint] == pytest.approx(per_angle * flexion.get(joint, 0.0), abs=1e-9)
+    for name, leg in LEGS.items():
+        assert (angles[1][leg.toes], rates[1][leg.toes]) == (toes if name == side else none)
+
+
+def test_actuators_deliver_what_a_known_device_leaves(
+    controller: WholeBodyController, joints: JointMap, standing: Array, plan: WalkingReference
+) -> None:
+    """Of a joint with prescribed motion; nothing else changes."""
+    assistance = np.zeros(42)
+    assistance[joints.names.index(ARMS["Right"].elbow)] = 3.0
+    context = context_with(controller, standing, plan)
+    torques = []
+    for known in (np.zeros(42), assistance):
+        controller.GetInputPort("assistance").FixValue(context, known)
+        updated(controller, context)
+        torques.append(controller.GetOutputPort("torque").Eval(context).copy())
+    assert torques[1] + assistance == pytest.approx(torques[0], abs=1e-6)
 
 
 def test_after_qp_failures_the_last_torque_is_held_for_a_while(
