@@ -8,6 +8,7 @@ import pytest
 from pydrake.multibody.tree import JacobianWrtVariable
 
 from humanwalk.body.contact import contact_spheres
+from humanwalk.body.impairments import JointImpairment
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.loads import Backpack, Suitcase
 from humanwalk.body.mjcf import to_mjcf
@@ -46,6 +47,15 @@ def test_only_soles_touch_and_only_the_ground(model: Any, skeleton: Skeleton) ->
     touching = {geom.get("name") for geom in model.iter("geom") if geom.get("conaffinity") == "1"}
     assert touching == {sphere.name for sphere in contact_spheres(skeleton)}
     assert [geom.get("name") for geom in model.iter("geom") if geom.get("contype") == "1"] == ["ground"]
+
+
+def test_joints_have_the_ranges_and_passive_torques_of_the_skeleton(skeleton: Skeleton) -> None:
+    skeleton = JointImpairment("ankle", "Left", stiffness=40.0, rest_angle=0.1).applied(skeleton)
+    for hinge in ET.fromstring(to_mjcf(skeleton)).iter("joint"):
+        joint = skeleton.joint(str(hinge.get("name")))
+        assert [float(x) for x in str(hinge.get("range")).split()] == pytest.approx(joint.range_rad)
+        found = [float(hinge.get(name, 0.0)) for name in ("armature", "damping", "stiffness", "springref")]
+        assert found == pytest.approx([joint.rotor_inertia, joint.damping, joint.stiffness, joint.rest_angle])
 
 
 class Both:

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from humanwalk.body import SIDES, human
 from humanwalk.body.markers import markers
-from humanwalk.body.opensim_names import COORDINATES, R_OW, SPINE_COORDINATES
+from humanwalk.body.opensim_names import COORDINATES, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.cli.main import app
 from humanwalk.exchange import FORMATS, export_run
@@ -113,6 +113,13 @@ def test_pelvis_rotation_is_in_opensims_coordinates(opensim_folder: Path, signal
     assert columns["pelvis_rotation"][-1] == pytest.approx(np.rad2deg(2 * 0.4), abs=2)
 
 
+def test_pelvis_is_where_it_was_recorded(opensim_folder: Path, signals: pa.Table) -> None:
+    _, columns = read_storage(opensim_folder / "angles.mot")
+    x, y, z = matrix(signals, [f"pelvis.{axis}_m" for axis in "xyz"]).T
+    for name, expected in zip(PELVIS_TRANSLATIONS, (x, z, -y), strict=True):
+        np.testing.assert_allclose(columns[name], expected, atol=1e-9)
+
+
 def test_opensims_world_is_x_forward_y_up_z_right() -> None:
     forward, left, up = np.eye(3)
     np.testing.assert_array_equal(R_OW @ forward, [1, 0, 0])
@@ -169,6 +176,15 @@ def test_power_of_a_joint_is_the_same_in_both_programs(opensim_folder: Path, sig
     for joint, (coordinate, _) in COORDINATES.items():
         product = signals[f"{joint}.torque_N_m"].to_numpy() * np.rad2deg(signals[f"{joint}.angle_rad"].to_numpy())
         np.testing.assert_allclose(torques[f"{coordinate}_moment"] * angles[coordinate], product, rtol=1e-9, atol=1e-9)
+
+
+def test_ground_force_on_a_loaded_foot_is_the_recorded_one(run: Run) -> None:
+    load, foot = ground_force(run, "Right"), "right_foot"
+    loaded = run.signals[f"{foot}.loaded"].to_numpy() > 0.5
+    for found, name in ((load.force, "force_*_N"), (load.point, "cop_*_m")):
+        recorded = matrix(run.signals, [f"{foot}.{name.replace('*', axis)}" for axis in "xyz"])
+        np.testing.assert_array_equal(found[loaded], recorded[loaded])
+    np.testing.assert_array_equal(load.free_moment[loaded], run.signals[f"{foot}.free_moment_N_m"].to_numpy()[loaded])
 
 
 @pytest.mark.parametrize("side", SIDES)
