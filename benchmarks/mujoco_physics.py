@@ -1,6 +1,5 @@
 """The same body in Drake and in MuJoCo: the same mass matrix, the same fall, the same walk, and what each costs.
 
-    python -m pip install mujoco                  # the dependency group `benchmark`
     python benchmarks/mujoco_physics.py           # writes benchmarks/results/mujoco_physics.json
 
 The thesis' walk is simulated in Drake and every step's joint targets and pelvis reference are kept. MuJoCo's body
