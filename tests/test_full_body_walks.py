@@ -228,9 +228,7 @@ def test_the_feet_of_a_fast_walk_do_not_cross(fast: float) -> None:
     assert min(left[row] - right[row] for row in landings) > 0.05
 
 
-OUT_AND_BACK = (
-    "{time: 0.5, forward: 0.8}, {time: 3}, {time: 5, turn: 0.4}, {time: 12.854}, {time: 13.5, forward: 0.8}"
-)
+OUT_AND_BACK = "{time: 0.5, forward: 0.8}, {time: 3}, {time: 5, turn: 0.4}, {time: 12.854}, {time: 13.5, forward: 0.8}"
 """Half a turn on the spot."""
 
 
