@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import EventStatus
+from pydrake.systems.framework import DiagramBuilder, EventStatus
 
 from humanwalk.bench.bare_plant import BarePlant, record_plant
 from humanwalk.bench.cost import Cost, cost_of, in_turns
@@ -26,8 +26,8 @@ from humanwalk.bench.result import machine
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.mjcf import GRAVITY, to_mjcf
 from humanwalk.body.plant import kinematics_plant
-from humanwalk.choices.world import human_gains
 from humanwalk.control.balance_support import support_wrench
+from humanwalk.diagrams.world import add_world
 from humanwalk.exchange.mujoco_map import MujocoMap
 from humanwalk.files import write_text
 from humanwalk.quantity import ParameterError
@@ -76,7 +76,8 @@ class MujocoWalk:
         # The scenario's actuators have no limits.
         self.model.actuator_ctrllimited[:] = 0
         self.map = MujocoMap.of(self.joints, self.model)
-        self.kp, self.kd = human_gains(scenario)
+        world = add_world(DiagramBuilder(), scenario)
+        self.kp, self.kd = world.kp, world.kd
         self.model.dof_damping[self.map.qvel] += self.kd
         self.data = mujoco.MjData(self.model)
         self.data.qpos[:] = self.map.to_qpos(walk.state[0, : self.joints.num_positions])
