@@ -164,8 +164,11 @@ def export(
     overwrite: OverwriteOption = False,
 ) -> None:
     """Write a run for another program: OpenSim, motion-capture software, a spreadsheet, MATLAB."""
-    from humanwalk.exchange import export_run
+    from humanwalk.exchange import export_run, forces_left_out
     from humanwalk.run.folder import Run
 
-    for path in export_run(Run.open(run), to, folder, overwrite=overwrite):
+    opened = Run.open(run)
+    for path in export_run(opened, to, folder, overwrite=overwrite):
         console.print(f"{path}", soft_wrap=True)
+    for force in forces_left_out(opened, to):
+        console.print(f"{force}: not in these files; inverse dynamics will find it as residual forces", soft_wrap=True)

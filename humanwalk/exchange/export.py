@@ -11,6 +11,8 @@ from scipy.io import savemat
 from humanwalk.exchange.c3d import write_c3d
 from humanwalk.exchange.opensim import write_opensim
 from humanwalk.files import WRITABLE, file_errors, make_folder, require_new, write_whole
+from humanwalk.measures.signals import matrix
+from humanwalk.measures.summary_rows import EXTERNAL_SUPPORT
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import dump_scenario
@@ -56,6 +58,17 @@ FORMATS: dict[str, Callable[[Run, Path], list[Path]]] = {
     "mat": write_mat,
 }
 """Formats by name: functions that write the files of a run into a folder and return their paths."""
+
+
+def forces_left_out(run: Run, to: str) -> tuple[str, ...]:
+    """Forces on the body that a format with the forces on the feet does not contain."""
+    if to not in NEED_PHYSICS:
+        return ()
+    acting = {
+        EXTERNAL_SUPPORT: run.summary["external_support"],
+        "pushes": matrix(run.signals, [f"push.force_{axis}_N" for axis in "xyz"]).any(),
+    }
+    return tuple(name for name, acts in acting.items() if acts)
 
 
 def export_run(run: Run, to: str, output: Path | None = None, *, overwrite: bool = False) -> list[Path]:

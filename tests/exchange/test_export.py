@@ -19,7 +19,7 @@ from humanwalk.body.markers import markers
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.cli.main import app
-from humanwalk.exchange import FORMATS, export_run
+from humanwalk.exchange import FORMATS, export_run, forces_left_out
 from humanwalk.exchange.motion import ground_force, marker_paths
 from humanwalk.measures.effort import joint_names
 from humanwalk.measures.signals import TIME, matrix
@@ -311,3 +311,9 @@ def test_csv_has_no_cell_that_a_spreadsheet_executes(run: Run, signals: pa.Table
     pq.write_table(hostile, folder / SIGNALS)
     with pytest.raises(ParameterError):
         export_run(Run.open(folder), "csv", tmp_path / "out")
+
+
+@pytest.mark.parametrize("to", FORMATS)
+def test_forces_that_a_format_does_not_contain_are_named(run: Run, to: str) -> None:
+    """The body of the made-up run is held upright and pushed."""
+    assert forces_left_out(run, to) == (("EXTERNAL SUPPORT", "pushes") if to in ("opensim", "c3d") else ())
