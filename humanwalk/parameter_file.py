@@ -7,7 +7,6 @@ import copy
 import dataclasses
 import functools
 import math
-import textwrap
 import typing
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
@@ -34,8 +33,8 @@ def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> No
         ParameterError: the text is not YAML, or the field cannot be replaced.
     """
     # Indented, so that no line of the text begins another field.
-    value = read_yaml("value: " + textwrap.indent(text, " "), f"--set {field}")["value"]
-    replace_value(kind, data, field, value)
+    indented = "\n ".join(text.splitlines())
+    replace_value(kind, data, field, read_yaml(f"value: {indented}", f"--set {field}")["value"])
 
 
 def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> None:
@@ -160,11 +159,7 @@ def rebuild[T](parameters: T, data: Mapping[str, Any]) -> T:
 
 
 def build_value(value: Any, name: str) -> Any:
-    """A value for a field that another dataclass will check; `name` is its place, for errors.
-
-    Raises:
-        ParameterError: YAML files may not have such a value.
-    """
+    """A value for a field that another dataclass will check, or ParameterError; `name` is its place in the message."""
     return _build_any(value, _Place(name, object))
 
 
