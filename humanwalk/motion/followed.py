@@ -47,7 +47,8 @@ def followed_motion(
     soles on the ground. Without a recorded path the pelvis stays upright and moves so that the lowest point of the
     soles, which stands still on the ground, does not slide.
 
-    Angles beyond a joint's range by up to RANGE_TOLERANCE are clipped, with a warning in the log.
+    Angles beyond a joint's range by up to RANGE_TOLERANCE are clipped, with a warning in the log. Columns that are not
+    used are named there too.
 
     Args:
         file: See `read_motion_table`.
@@ -70,6 +71,7 @@ def followed_motion(
                 f"{', '.join((*PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS))}{did_you_mean(brief(name), known)}"
             )
     angles, pelvis_angles, position = columns.joints(joints), columns.pelvis_angles(), columns.pelvis_position()
+    columns.report_unused()
     body = _Body(plant, subject, joints)
     if position is None:
         position = _stance_path(body, terrain, angles, pelvis_angles)
@@ -86,6 +88,7 @@ class _Columns:
 
     def __init__(self, table: MotionTable, mapping: MotionMapping, file: str) -> None:
         self.table, self._mapping, self._file = table, mapping, file
+        self._used: set[str] = set()
 
     def joints(self, joints: JointMap) -> Array:
         """Angles of all joints [rad], shape (rows, n), within their ranges."""
@@ -115,7 +118,7 @@ class _Columns:
         angles = np.zeros((self.table.time.size, 3))
         # OpenSim's tilt is about an axis to the right.
         for i, (name, sign) in enumerate(zip(PELVIS_ROTATIONS, (-1.0, 1.0, 1.0), strict=True)):
-            found = self._angle(name, [name], 1.0)
+            found = self._angle(name, _spellings(name), 1.0)
             if found is not None:
                 angles[:, i] = sign * np.unwrap(self._bounded(name, found, MAX_PELVIS_ANGLE, "rad"))
         return angles
@@ -135,14 +138,14 @@ class _Columns:
         return self._bounded("pelvis path", position, MAX_PELVIS_POSITION, "m")
 
     def _candidates(self, joint: str) -> list[str]:
-        coordinate = [COORDINATES[joint][0]] if joint in COORDINATES else []
-        return [f"{joint}.angle_rad", f"{joint}.angle_deg", joint, *coordinate]
+        coordinate = _spellings(COORDINATES[joint][0]) if joint in COORDINATES else []
+        return [f"{joint}.angle_rad", f"{joint}.angle_deg", *_spellings(joint), *coordinate]
 
     def _spine(self) -> Mapping[str, Array]:
         """OpenSim's single joint of the back, distributed evenly over the joints that it represents."""
         parts: dict[str, Array] = {}
         for coordinate, (joints, factor) in SPINE_COORDINATES.items():
-            found = self._angle(coordinate, [coordinate], 1.0)
+            found = self._angle(coordinate, _spellings(coordinate), 1.0)
             if found is not None:
                 parts |= dict.fromkeys(joints, found / (factor * len(joints)))
         return parts
@@ -152,13 +155,17 @@ class _Columns:
         mapped = self._mapping.columns.get(name)
         if mapped is None:
             column = next((candidate for candidate in candidates if candidate in self.table.columns), None)
-            return None if column is None else (self.table.column(column), column)
+            if column is None:
+                return None
+            self._used.add(column)
+            return self.table.column(column), column
         if mapped.column not in self.table.columns:
             column = brief(mapped.column)
             raise ParameterError(
                 f"{self._file}: no column {column}, which the mapping has for {name}; found: "
                 f"{first_names(self.table.columns)}{did_you_mean(column, [*map(brief, self.table.columns)])}"
             )
+        self._used.add(mapped.column)
         return mapped.scale * self.table.column(mapped.column) + mapped.offset, mapped.column
 
     def _angle(self, name: str, candidates: list[str], factor: float) -> Array | None:
@@ -167,7 +174,7 @@ class _Columns:
         if found is None:
             return None
         values, column = found
-        if name not in self._mapping.columns and column == COORDINATES.get(name, ("",))[0]:
+        if name not in self._mapping.columns and column in _spellings(COORDINATES.get(name, ("",))[0]):
             values = factor * values
         return np.deg2rad(values) if self._in_degrees(column) else values
 
@@ -183,6 +190,12 @@ class _Columns:
                 "rename it, or set angle_unit: deg in --mapping"
             )
         return self.table.in_degrees
+
+    def report_unused(self) -> None:
+        """Log the columns that no joint and no coordinate of the pelvis was read from."""
+        unused = [column for column in self.table.columns if column not in self._used]
+        if unused:
+            logger.warning("%s: columns that are not used: %s", self._file, first_names(unused))
 
     def _within_range(self, joints: JointMap, angles: Array) -> Array:
         """The angles, clipped to the joints' ranges where they exceed them by up to RANGE_TOLERANCE."""
@@ -209,6 +222,11 @@ class _Columns:
                 "and the scale in --mapping"
             )
         return values
+
+
+def _spellings(angle: str) -> list[str]:
+    """Names of the column of an angle: without a unit, or with one."""
+    return [angle, f"{angle}_deg", f"{angle}_rad"]
 
 
 class _Body:

@@ -133,6 +133,32 @@ def test_csv_without_unit_is_refused(tmp_path: Path) -> None:
     assert "unknown angle unit" in refusal(path)
 
 
+@pytest.mark.parametrize(("unit", "radian"), [("deg", float(np.rad2deg(1.0))), ("rad", 1.0)])
+def test_every_angle_can_have_its_unit_in_the_name_of_its_column(
+    tmp_path: Path, joints: JointMap, unit: str, radian: float
+) -> None:
+    angles = {f"{COORDINATES[name][0]}_{unit}": 0.0 for name in REQUIRED_JOINTS}
+    angles |= {f"{name}_{unit}": 0.1 for name in ("knee_angle_r", "hip_adduction_r", "RightArmElbowMotion")}
+    angles |= {f"{name}_{unit}": 0.2 for name in ("pelvis_tilt", "lumbar_extension")}
+    path = tmp_path / "t.csv"
+    rows = (",".join((time, *(repr(radian * angle) for angle in angles.values()))) for time in ("0", "1"))
+    path.write_text("\n".join((",".join(("time", *angles)), *rows)))
+    motion = read(path)
+    angle = dict(zip(joints.names, motion.angles[0], strict=True))
+    assert angle["RightLegTibiaMotion"] == angle["RightArmElbowMotion"] == pytest.approx(0.1)
+    assert angle["RightLegFemurSideMotion"] == pytest.approx(-0.1)
+    assert sum(angle[name] for name in SPINE_PITCH_JOINTS) == pytest.approx(-0.2)
+    np.testing.assert_allclose(motion.pelvis_angles[0], [-0.2, 0.0, 0.0])
+
+
+def test_columns_that_are_not_used_are_logged(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    read(write_mot(tmp_path / "all.mot", squat()))
+    assert not caplog.messages
+    read(write_mot(tmp_path / "more.mot", squat() | {"pelvis_tilt": TIME, "pelvis_tilts": TIME, "emg": TIME}))
+    (message,) = caplog.messages
+    assert message.endswith("more.mot: columns that are not used: pelvis_tilts, emg")
+
+
 def test_part_of_a_pelvis_path_is_refused(tmp_path: Path) -> None:
     path = write_mot(tmp_path / "t.mot", squat() | {"pelvis_tx": TIME})
     assert "all three or none" in refusal(path)
