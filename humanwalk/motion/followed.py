@@ -1,7 +1,7 @@
 """A recording as motion of a subject's body: columns to joints, units to SI, feet on the ground."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -63,13 +63,8 @@ def followed_motion(
     columns = _Columns(read_motion_table(file), mapping, printable(file))
     plant = kinematics_plant(subject)
     joints = JointMap.of(plant)
-    known = (*joints.names, *PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS)
-    for name in (*mapping.columns, *mapping.hold):
-        if name not in known:
-            raise ParameterError(
-                f"mapping: {brief(name)}: no such joint; allowed: the {len(joints.names)} joints of the body and "
-                f"{', '.join((*PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS))}{did_you_mean(brief(name), known)}"
-            )
+    _require_known("columns", mapping.columns, joints.names, (*PELVIS_ROTATIONS, *PELVIS_TRANSLATIONS))
+    _require_known("hold", mapping.hold, joints.names, ())
     angles, pelvis_angles, position = columns.joints(joints), columns.pelvis_angles(), columns.pelvis_position()
     columns.report_unused()
     body = _Body(plant, subject, joints)
@@ -81,6 +76,17 @@ def followed_motion(
         position[:, 2] -= np.min(soles[:, 2] - terrain.height(soles[:, :2]))
     time = columns.table.time
     return RecordedMotion(time - time[0], angles, pelvis_angles, position, ease_in)
+
+
+def _require_known(field: str, names: Iterable[str], joints: Sequence[str], pelvis: Sequence[str]) -> None:
+    """Raise ParameterError for a name in a field of the mapping that is no joint and no coordinate of the pelvis."""
+    for name in names:
+        if name not in (*joints, *pelvis):
+            raise ParameterError(
+                f"mapping: {field}.{brief(name)}: no such joint; allowed: "
+                f"{', '.join((f'the {len(joints)} joints of the body', *pelvis))}"
+                f"{did_you_mean(brief(name), (*joints, *pelvis)) or '; correct it'}"
+            )
 
 
 class _Columns:

@@ -111,7 +111,8 @@ def test_error_names_all_missing_joints_and_the_fix(tmp_path: Path) -> None:
     [
         ("columns: {RightLegTibiaMotion: {column: kneeangle_r}}", "did you mean knee_angle_r?"),
         ("columns: {RightLegTibaMotion: {column: knee_angle_r}}", "did you mean RightLegTibiaMotion?"),
-        ("hold: {RightKnee: 0}", "no such joint"),
+        ("hold: {RightKnee: 0}", "hold.RightKnee: no such joint; allowed: the 42 joints of the body; "),
+        ("hold: {pelvis_tilt: 0.1}", "hold.pelvis_tilt: no such joint; allowed: the 42 joints of the body; "),
         ("angle_unit: degrees", "allowed: auto, deg, rad"),
         ("columns: [1]", "name: value pairs"),
         ("columns: {RightLegTibiaMotion: {column: knee_angle_r, scale: .nan}}", "finite"),
