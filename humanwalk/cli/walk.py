@@ -18,7 +18,7 @@ from humanwalk.body.subject import Subject
 from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, numbers_of, printable
 from humanwalk.run.folder import RUNS, Run, claimed, new_run_folder, require_room
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.outcome import Outcome
@@ -26,6 +26,10 @@ from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.view.replay import make_meshcat
 from humanwalk.view.replay_file import write_replay
+from humanwalk.walking.step_timing import StepTiming
+
+STEP_RANGE = next((of["low"], of["high"]) for name, _, of in numbers_of(StepTiming()) if name == "step")
+"""Shortest and longest step that the walker may take [s], for the reference body."""
 
 LOST = "the live view was lost: a web page sent a message that Meshcat cannot read; close pages that you do not trust"
 
@@ -169,10 +173,16 @@ def balanced_overrides(recording: Path, mapping: Path | None, subject: Subject) 
         subject: Body that the recording is applied to.
 
     Raises:
-        ParameterError: The recording cannot be read, or is not a walk.
+        ParameterError: The recording cannot be read, is not a walk, or has steps that the walker cannot take.
     """
     style = RecordedStyle(**_files(recording, mapping))
     gait = style.gait(subject)
+    low, high = (subject.scale.time * end for end in STEP_RANGE)
+    if not low <= gait.step <= high:
+        raise ParameterError(
+            f"{printable(recording)}: a step takes {gait.step:.3g} s; allowed: {low:.3g} to {high:.3g} s for this "
+            "subject; give the time, its first column or that named time, in s, or record another walk"
+        )
     walker = {
         "command": {"points": [{"time": 0.2, "forward": gait.speed}], "acceleration": 1.0},
         # Parameters are those of the reference body.

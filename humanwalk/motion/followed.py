@@ -35,6 +35,9 @@ MAX_PELVIS_ANGLE = 1000.0
 MAX_PELVIS_POSITION = 10_000.0
 """Largest recorded angle [rad] and coordinate [m] of the pelvis."""
 
+MAX_PELVIS_SPEED = 10.0
+"""Largest recorded speed of the pelvis [m/s]: that of a sprinter. A walk in millimeters is faster."""
+
 METERS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
@@ -141,7 +144,16 @@ class _Columns:
                 "add or remove columns"
             )
         position: Array = METERS[self._mapping.length_unit] * np.column_stack(present) @ R_OW
-        return self._bounded("pelvis path", position, MAX_PELVIS_POSITION, "m")
+        self._bounded("pelvis path", position, MAX_PELVIS_POSITION, "m")
+        speed = np.linalg.norm(np.diff(position, axis=0), axis=1) / np.diff(self.table.time)
+        row = int(np.argmax(speed))
+        if speed[row] > MAX_PELVIS_SPEED:
+            raise ParameterError(
+                f"{self._file}: {', '.join(PELVIS_TRANSLATIONS)} move at {speed[row]:.3g} m/s at "
+                f"{self.table.time[row]:g} s; allowed: up to {MAX_PELVIS_SPEED:g} m/s; check their unit "
+                "(length_unit: mm) in --mapping, and close jumps"
+            )
+        return position
 
     def _candidates(self, joint: str) -> list[str]:
         coordinate = _spellings(COORDINATES[joint][0]) if joint in COORDINATES else []

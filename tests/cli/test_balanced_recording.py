@@ -7,6 +7,9 @@ from typing import Any
 
 import pytest
 
+from humanwalk.body.subject import Subject
+from humanwalk.cli.walk import balanced_overrides
+from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import load_scenario
 
@@ -54,6 +57,19 @@ def test_a_smaller_subject_takes_the_recorded_time_for_a_step(humanwalk: Any, tm
     step, scale = scenario.controller.planner.timing.step, scenario.subject.scale
     assert scale.time < 0.97
     assert step * scale.time == pytest.approx(STEP, abs=0.01)
+
+
+def test_a_recording_with_times_in_milliseconds_is_refused_by_its_time(tmp_path: Path) -> None:
+    path = tmp_path / "trial.csv"
+    runpy.run_path(str(SLOW_TRIAL))["write"](path, SPEED, STEP, 3.0)
+    header, *rows = path.read_text().splitlines()
+    times, others = zip(*(row.split(",", 1) for row in rows), strict=True)
+    path.write_text("\n".join((header, *(f"{1000.0 * float(t)!r},{o}" for t, o in zip(times, others, strict=True)))))
+    with pytest.raises(
+        ParameterError, match=r"trial\.csv: a step takes 6\d\d s; allowed: 0\.3 to 1\.2 s .* time, "
+    ) as error:
+        balanced_overrides(path, None, Subject(sex="unspecified"))
+    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("options", [("--balanced",), ("--follow", "trial.csv", "--kinematic", "--balanced")])

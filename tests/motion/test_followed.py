@@ -165,6 +165,17 @@ def test_part_of_a_pelvis_path_is_refused(tmp_path: Path) -> None:
     assert "all three or none" in refusal(path)
 
 
+def test_a_path_in_another_unit_than_that_of_the_mapping_is_refused(tmp_path: Path) -> None:
+    zero = np.zeros_like(TIME)
+    path = {"pelvis_tx": 900.0 * TIME, "pelvis_ty": zero, "pelvis_tz": zero}
+    recording = write_mot(tmp_path / "t.mot", squat() | path)
+    assert "pelvis_tx, pelvis_ty, pelvis_tz move at 900 m/s at" in refusal(recording)
+    assert "allowed: up to 10 m/s; check their unit (length_unit: mm) in --mapping" in refusal(recording)
+    mapping = tmp_path / "map.yaml"
+    mapping.write_text("length_unit: mm")
+    assert read(recording, mapping).pelvis_position[-1, 0] == pytest.approx(0.9)
+
+
 def clearance(motion: RecordedMotion, joints: JointMap, row: int, terrain: Plane = LEVEL) -> float:
     """Height of the lowest point of the soles above the ground [m]."""
     plant = kinematics_plant(Subject())
