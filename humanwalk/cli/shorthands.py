@@ -98,6 +98,8 @@ def push_of(text: str) -> Push:
     # The force points away from where it comes from.
     direction = math.remainder(math.radians(bearing + 180.0), 2.0 * math.pi)
     numbers = {name: float(found[name]) for name in ("impulse", "time", "duration") if found[name]}
+    for name, number in numbers.items():
+        _require_allowed(f"--push {text}", _fields(Push)[name], number)
     return Push(direction=direction, body=found["body"] or Push.body, **numbers)
 
 
@@ -119,6 +121,7 @@ def _load(text: str) -> dict[str, dict[str, Any]]:
             f'it like "{LOAD_EXAMPLE}"{did_you_mean(tag, tuple(LOADS))}'
         )
     fields: dict[str, Any] = {"mass": float(found["mass"]), "known": found["unknown"] is None}
+    _require_allowed(f"--load {text}", _fields(LOADS[tag])["mass"], fields["mass"])
     if found["side"]:
         fields["side"] = found["side"].capitalize()
     return {tag: fields}
@@ -190,12 +193,14 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
             _say(fields, name, found["word"], f"{option} {text}")
         elif written in factors:
             value = float(found["number"]) * factors[written]
+            if found["unit"].strip():
+                _require_allowed(f"{option} {text}", known[name], value)
             whole = not unit and value.is_integer()
             _say(fields, name, int(value) if whole else value, f"{option} {text}")
         else:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
-                f"{' or '.join(factors)}; write one of them"
+                f"{' or '.join(factors) or 'no unit'}; correct it"
             )
     return {tag: fields}
 
@@ -245,7 +250,7 @@ def terrain_overrides(text: str) -> dict[str, str]:
             raise _terrain_error(
                 text, f"{tag} has no field {name}, but {', '.join(known)}{did_you_mean(name, tuple(known))}"
             )
-    values = {name: _in_unit(*written, known[name].metadata.get("unit", ""), text) for name, written in fields.items()}
+    values = {name: _in_unit(*written, known[name], text) for name, written in fields.items()}
     return {"terrain": json.dumps({tag: values})}
 
 
@@ -275,14 +280,26 @@ def _fields(terrain: Any) -> dict[str, dataclasses.Field[Any]]:
     return {field.name: field for field in dataclasses.fields(terrain)}
 
 
-def _in_unit(value: Any, written: str, unit: str, text: str) -> Any:
+def _in_unit(value: Any, written: str, field: dataclasses.Field[Any], text: str) -> Any:
     """A value in the unit of its field."""
     if not written:
         return value
+    unit = field.metadata.get("unit", "")
     units = UNITS.get(unit, {unit: 1.0} if unit else {})
     if written not in units:
         raise _terrain_error(text, f"{printable(written)} is no unit of it; write {' or '.join(units) or 'no unit'}")
-    return value * units[written]
+    converted = value * units[written]
+    _require_allowed(f"--terrain {text}", field, converted)
+    return converted
+
+
+def _require_allowed(where: str, field: dataclasses.Field[Any], value: float) -> None:
+    """Raise ParameterError unless a value that was written with its unit is in the range of its field.
+
+    Where the scenario is checked, the unit is no longer known: the message there may take the value for one in another.
+    """
+    unit, low, high = (field.metadata[key] for key in ("unit", "low", "high"))
+    require_in_range(f"{printable(where)}: {field.name}", value, unit, low, high, other_units=False)
 
 
 def _terrain_error(text: str, problem: str) -> ParameterError:

@@ -50,7 +50,12 @@ def test_spaces_around_units_are_free(text: str) -> None:
     assert push_of(text) == push_of("60 N s at 8 s from behind")
 
 
-@given(impulse=positive, time=positive, bearing=st.floats(-360.0, 360.0), duration=positive)
+@given(
+    impulse=positive,
+    time=positive,
+    bearing=st.floats(-360.0, 360.0),
+    duration=st.floats(0.001, 60.0, allow_nan=False),
+)
 def test_a_push_points_away_from_where_it_comes_from(
     impulse: float, time: float, bearing: float, duration: float
 ) -> None:
@@ -104,7 +109,7 @@ def test_a_field_that_is_said_twice_is_refused(change: dict[str, Any]) -> None:
 def test_pushes_replace_those_of_the_scenario() -> None:
     texts = ["60 N s at 8 s from behind", "30 N s at 9 s from the right"]
     assert changed("push", push=texts).pushes.given == tuple(push_of(text) for text in texts)
-    with pytest.raises(ParameterError, match=r"pushes.given.0.impulse: 5000 is out of range"):
+    with pytest.raises(ParameterError, match=r"--push 5000 N s at 8 s from behind: impulse: 5000 is out of range"):
         load_scenario("walk", push_overrides(["5000 N s at 8 s from behind"]))
 
 
@@ -174,7 +179,7 @@ def test_every_piece_can_be_written(tag: str) -> None:
         ("stairs sideways", "sideways is not FIELD VALUE of stairs, which has .*direction"),
         ("curb 12 furlongs", "furlongs is no unit of height; allowed: m or cm or mm"),
         ("obstacle down", "terrain.course.pieces.0.obstacle.direction: no such field"),
-        ("curb -12 cm", r"terrain.course.pieces.0.curb.height: -0.12 is out of range"),
+        ("curb -12 cm", r"--terrain curb -12 cm: height: -0.12 is out of range"),
         ("stairs number 2.5", "terrain.course.pieces.0.stairs.number"),
     ],
 )
@@ -192,6 +197,38 @@ def test_a_field_of_several_terrains_needs_the_terrain(monkeypatch: pytest.Monke
     with pytest.raises(ParameterError, match="plane and hills have these fields; begin with one of them"):
         terrain_overrides("slope 3 deg")
     assert changed(terrain="height_of_hills 20 cm").terrain == Hills(height_of_hills=0.2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "range_and_fix"),
+    [
+        (
+            {"impairment": ["stiff knee left 100 deg"]},
+            "angle: 1.74533 is out of range; allowed: 0 to 1.5 rad; the nearest",
+        ),
+        ({"terrain": "slope 100 deg"}, "slope: 1.74533 is out of range; allowed: -0.5 to 0.5 rad; the nearest"),
+        (
+            {"terrain": "flat then slope 100 deg"},
+            "slope: 1.74533 is out of range; allowed: -0.5 to 0.5 rad; the nearest",
+        ),
+        ({"terrain": "curb 300 cm"}, "height: 3 is out of range; allowed: 0.01 to 0.4 m; the nearest"),
+        ({"load": ["backpack 100 kg"]}, "mass: 100 is out of range; allowed: 0.1 to 80 kg; the nearest"),
+        (
+            {"push": ["9 N s at 1 s from behind for 100 s"]},
+            "duration: 100 is out of range; allowed: 0.001 to 60 s; the nearest",
+        ),
+    ],
+)
+def test_a_value_with_its_unit_is_not_taken_for_one_in_another(changes: dict[str, Any], range_and_fix: str) -> None:
+    (option,) = changes
+    with pytest.raises(ParameterError, match=re.escape(range_and_fix)) as refusal:
+        changed(**changes)
+    assert str(refusal.value).startswith(f"--{option} ")
+
+
+def test_a_value_without_a_unit_may_be_in_another() -> None:
+    with pytest.raises(ParameterError, match=r"if it is in degrees, write 0\.1745"):
+        changed(impairment=["stiff knee left 10"])
 
 
 # --speed, --mass, --stature
@@ -259,6 +296,7 @@ def test_impairments_and_devices_are_described() -> None:
     [
         ("stif knee", "did you mean stiff_knee"),
         ("short leg 3 km", "km is no unit of shortening; allowed: m or cm or mm"),
+        ("weak plantarflexors both strength 60 %", "% is no unit of strength; allowed: no unit; correct it"),
         ("stiff knee bend 3", "bend 3 is not FIELD VALUE of stiff_knee, which has angle, play, side, known"),
     ],
 )
