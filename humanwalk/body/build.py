@@ -228,8 +228,9 @@ def _fitted(body: Skeleton, name: str, region: Region, axis: int, position: floa
     rest = region.mass * np.square(region.gyration) - (together - own)
     if min(rest) <= 0.0 or max(rest) >= rest.sum() - max(rest):
         raise ParameterError(
-            f"{name}: {region.mass:.3g} kg cannot have the moments of inertia of its length and width; allowed: what a "
-            "solid can have; correct its length, width or mass"
+            f"{name}: {region.mass:.3g} kg cannot have the moments of inertia of a length of {region.length:.3g} m and "
+            f"a width of {region.width:.3g} m; allowed: each more than 0 and less than the sum of the others; correct "
+            "its length, width or mass"
         )
     kx, ky, kz = np.sqrt(rest / (free * region.mass)).tolist()
     for part, share in shares.items():

@@ -20,7 +20,7 @@ from humanwalk.body.regions import regions
 from humanwalk.body.sdf import Look
 from humanwalk.body.skeleton import MASS_RANGE_KG, REFERENCE_MASS, REFERENCE_STATURE, STATURE_RANGE_M, Skeleton
 from humanwalk.body_units import BodyScale
-from humanwalk.quantity import ParameterError, check, choice_list, file_path, quantity, tag_of
+from humanwalk.quantity import ParameterError, check, choice_list, file_path, printable, quantity, tag_of
 
 BODY_MASS_INDEX = (10.0, 80.0)
 """Range of mass over the square of stature [kg/m2]: adults die below 10 to 12 and cannot walk above 80 (our choice)."""
@@ -160,12 +160,16 @@ def _thesis_body(subject: Subject) -> Skeleton:
 def _table_body(sex: Sex) -> Callable[[Subject], Skeleton]:
     def body(subject: Subject) -> Skeleton:
         segments = regions(sex, subject.age, subject.mass, subject.stature)
-        if subject.measured:
-            try:
-                segments = completed(segments, read_measurements(Path(subject.measured)))
-            except ParameterError as error:
-                raise ParameterError(f"subject.measured: {error}") from None
-        return person(sex, segments)
+        if not subject.measured:
+            return person(sex, segments)
+        try:
+            measured = read_measurements(Path(subject.measured))
+        except ParameterError as error:
+            raise ParameterError(f"subject.measured: {error}") from None
+        try:
+            return person(sex, completed(segments, measured))
+        except ParameterError as error:
+            raise ParameterError(f"subject.measured: {printable(subject.measured)}: {error}") from None
 
     return body
 

@@ -1,6 +1,7 @@
 """Measured segments out of a file: what is kept, what is scaled, what is refused."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -165,6 +166,26 @@ def test_a_file_that_cannot_be_used_is_refused(tmp_path: Path, text: str, said: 
         _ = subject(write(tmp_path, text)).body
     assert str(error.value).startswith("subject.measured: ")
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "segment,width_m\nshank,0.001\n",
+            r"right_shank: \S+ kg .* a length of 0\.\d+ m and a width of 0\.001 m; allowed: each",
+        ),
+        (
+            "segment,width_m\nlower_trunk,0.9\n",
+            r"lower_trunk: \S+ kg .* a length of 0\.\d+ m and a width of 0\.9 m; allowed: each",
+        ),
+        ("segment,mass_kg\nhead,60\n", "mass: the measured segments leave"),
+    ],
+)
+def test_segments_that_no_person_has_are_refused_with_their_file(tmp_path: Path, text: str, said: str) -> None:
+    path = write(tmp_path, text)
+    with pytest.raises(ParameterError, match=f"^subject.measured: {re.escape(str(path))}: {said}"):
+        _ = subject(path).body
 
 
 def test_a_yaml_file_without_segments_is_refused(tmp_path: Path) -> None:
