@@ -30,11 +30,11 @@ the path passes again half a minute later is 3 m from itself."""
 
 
 class Directions(NamedTuple):
-    """Directions of the commanded path beside the walker, of length 1, at every row of a record, (rows,) each.
+    """Directions of the commanded path beside the walker at every row of a record, of length 1, (rows,) each.
 
     Attributes:
         facing: heading of the walker.
-        travel: of the commanded motion; in standing of the next one, or of the last one.
+        travel: of the commanded motion; in standing of the next one, or of the last one. 0 if none is commanded.
     """
 
     facing: Array
@@ -51,12 +51,11 @@ def path_directions(signals: pa.Table, command: CommandParameters | None) -> Dir
     velocity, heading, position = _motion(command, time)
     # A whole turn is exactly one: straight walks keep their directions to the last bit.
     facing = np.where(heading == 0.0, 1.0, np.exp(1j * heading))
+    travel = np.zeros_like(facing)
     (moving,) = np.nonzero(velocity)
     if moving.size:
         velocity = velocity[moving[np.searchsorted(moving, np.arange(time.size)).clip(max=moving.size - 1)]]
-    else:
-        velocity = np.ones_like(velocity)
-    travel = facing * velocity / np.abs(velocity)
+        travel = facing * velocity / np.abs(velocity)
     places = np.column_stack((position.real, position.imag, PER_SECOND * time))
     measured = com - com[0]
     _, beside = KDTree(places).query(

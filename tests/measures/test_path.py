@@ -92,12 +92,19 @@ def test_a_walk_without_command_has_none(name: str) -> None:
 EVERY = np.ones_like(TIMES, dtype=bool)
 
 
-@pytest.mark.parametrize("command", [AHEAD, None, CommandParameters(points=())])
+@pytest.mark.parametrize("command", [AHEAD, None])
 def test_a_straight_walk_faces_along_x_to_the_last_bit(command: CommandParameters | None) -> None:
     directions = path_directions(record(lambda t: t + 0.1j * np.sin(t)), command)
     assert (directions.facing == 1.0).all()
     assert directions.travel == pytest.approx(1.0, abs=1e-12)
     assert not directions.travel.imag.any()
+
+
+def test_a_walker_that_is_to_stand_covers_no_distance() -> None:
+    signals = record(lambda t: 0.01 * t + 0j)
+    directions = path_directions(signals, CommandParameters(points=()))
+    assert (directions.facing == 1.0).all()
+    assert distance_along(signals, EVERY, directions.travel) == 0.0
 
 
 @given(lag=st.floats(0.0, 1.0), aside=st.floats(-0.1, 0.1))
