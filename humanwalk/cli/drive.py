@@ -66,7 +66,7 @@ def drive_and_write(
         if browser:
             # A text browser in this terminal does not return until it is closed.
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
-        first = RUNS / NAME if output is None else output.absolute()
+        first = output.absolute() if output else RUNS / NAME
         ended = Ended.RESET
         try:
             while ended is not Ended.INTERRUPT:

@@ -174,7 +174,7 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     for item in words[len(tag) :].split(","):
         said = [WORDS[word] for word in item.split() if word in WORDS]
         for name, value in said:
-            _say(fields, name, value, f"{option} {text}")
+            _give(fields, name, value, f"{option} {text}")
         rest = " ".join(word for word in item.split() if word not in WORDS)
         if not rest or rest in dict(said):
             continue
@@ -190,13 +190,13 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
         unit = known[name].metadata.get("unit", "")
         factors, written = UNITS.get(unit, {unit: 1.0}), (found["unit"] or "").strip() or unit
         if found["word"]:
-            _say(fields, name, found["word"], f"{option} {text}")
+            _give(fields, name, found["word"], f"{option} {text}")
         elif written in factors:
             value = float(found["number"]) * factors[written]
             if found["unit"].strip():
                 _require_allowed(f"{option} {text}", known[name], value)
             whole = not unit and value.is_integer()
-            _say(fields, name, int(value) if whole else value, f"{option} {text}")
+            _give(fields, name, int(value) if whole else value, f"{option} {text}")
         else:
             raise ParameterError(
                 f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
@@ -205,14 +205,14 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     return {tag: fields}
 
 
-def _say(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
+def _give(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
     """Give a field its value.
 
     Raises:
         ParameterError: it has one.
     """
     if name in fields:
-        raise ParameterError(f"{printable(where)}: {name} is said twice; allowed: every field once; remove one")
+        raise ParameterError(f"{printable(where)}: {name} is given twice; allowed: every field once; remove one")
     fields[name] = value
 
 
@@ -242,7 +242,7 @@ def terrain_overrides(text: str) -> dict[str, str]:
     fields: dict[str, tuple[Any, str]] = {}
     for item in (after_tag, *others):
         if item.strip():
-            _say(fields, *_field(item, text), f"--terrain {text}")
+            _give(fields, *_field(item, text), f"--terrain {text}")
     tag = tag or _terrain_with(fields, text)
     known = _fields(TERRAINS[tag])
     for name in fields:

@@ -101,8 +101,9 @@ def test_an_angle_of_more_than_a_turn_is_refused(angle: str) -> None:
         {"terrain": "plane slope 3 deg, slope 5 deg"},
     ],
 )
-def test_a_field_that_is_said_twice_is_refused(change: dict[str, Any]) -> None:
-    with pytest.raises(ParameterError, match=r"(side|length|direction|rise|slope|shortening|difference) is said twice"):
+def test_a_field_that_is_given_twice_is_refused(change: dict[str, Any]) -> None:
+    fields = "side|length|direction|rise|slope|shortening|difference"
+    with pytest.raises(ParameterError, match=rf"({fields}) is given twice"):
         changed(**change)
 
 
