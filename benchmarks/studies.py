@@ -406,7 +406,7 @@ def _survival(rows: Sequence[Row]) -> tuple[str, str]:
 
 
 STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
-    "balance.md": (
+    "robustness.md": (
         balance_speeds,
         balance_fast,
         balance_fast_pushes,

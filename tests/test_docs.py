@@ -99,7 +99,7 @@ def test_the_block_diagram_of_every_scenario_is_in_the_book(name: str) -> None:
 
 
 def gains(parameters: Any, path: str = "") -> Iterator[Any]:
-    """Name, default and unit of every number, a task's numbers together, as docs/balance.md writes them."""
+    """Name, default and unit of every number, a task's numbers together, as docs/reference/gains.md writes them."""
     for field in dataclasses.fields(parameters):
         value, name = getattr(parameters, field.name), f"{path}{field.name}"
         if "unit" in field.metadata:
@@ -113,7 +113,7 @@ def gains(parameters: Any, path: str = "") -> Iterator[Any]:
 
 
 def test_the_table_of_gains_is_the_code() -> None:
-    page = (DOCS / "balance.md").read_text(encoding="utf-8")
+    page = (DOCS / "reference" / "gains.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `([a-z_.]+)` \| ([^|]+?) \| ([^|]*?) ?\| [^|]+ \|$", page, re.MULTILINE)
     assert rows == list(gains(BalancedController()))
 
@@ -122,7 +122,7 @@ def test_the_moving_picture_is_light_enough_for_a_first_screen() -> None:
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-PAGES = ("performance", "balance", "likeness", "contact", "claims", "actuation", "howto/subjects")
+PAGES = ("performance", "robustness", "likeness", "contact", "claims", "actuation", "howto/subjects")
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -70,7 +70,7 @@ class CompliantGains:
 class BalancedController:
     """Command, step planner and whole-body program; the last two run every control period.
 
-    Values of planner, program and gains are for the reference body and scale with the subject (docs/balance.md).
+    Values of planner, program and gains are for the reference body and scale with the subject (docs/reference/gains.md).
     """
 
     command: CommandParameters = CommandParameters()
@@ -104,7 +104,7 @@ class BalancedController:
     """Palmar flexion of the wrists."""
 
     control_period: float = quantity(0.006, "s", 0.001, 0.01)
-    """Time between two plans and solutions: three steps of the plant. The tables of docs/balance.md hold for it."""
+    """Time between two plans and solutions: three steps of the plant. The tables of docs/robustness.md hold for it."""
 
     physics = True
 

@@ -49,7 +49,7 @@ TESTED = {
     "sideways": ("m/s", ((-0.3, 0.3),)),
     "turn": ("rad/s", ((-0.4, 0.4),)),
 }
-"""Unit and tested ranges of each commanded speed: the tables of docs/balance.md."""
+"""Unit and tested ranges of each commanded speed: the tables of docs/robustness.md."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class CommandParameters:
         """Commanded speeds beyond the tested ranges, one line each."""
         return tuple(
             f"commanded {name} {getattr(point, name):g} {unit} at {point.time:g} s is not tested; tested: "
-            f"{' and '.join(f'{low:g} to {high:g}' for low, high in ranges)} {unit} (docs/balance.md)"
+            f"{' and '.join(f'{low:g} to {high:g}' for low, high in ranges)} {unit} (docs/robustness.md)"
             for point in self.points
             for name, (unit, ranges) in TESTED.items()
             if not any(low <= getattr(point, name) <= high for low, high in ranges)
