@@ -70,7 +70,8 @@ class CompliantGains:
 class BalancedController:
     """Command, step planner and whole-body program; the last two run every control period.
 
-    Values of planner, program and gains are for the reference body and scale with the subject (docs/reference/gains.md).
+    Values of planner, program and gains are for the reference body and scale with the subject
+    (docs/reference/gains.md).
     """
 
     command: CommandParameters = CommandParameters()

@@ -5,6 +5,7 @@ The limits were found with simulated pushes (docs/balance_trials.md, "What a pus
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from humanwalk.body import Side
@@ -95,28 +96,27 @@ class StepPlacement:
         """Whether a foot stands across the stance foot, or nearly so."""
         return OUTWARD[stance] * foot.imag < self.min_own_side_offset
 
-    def passing_waypoint(
-        self, start: complex, foot: complex, foothold: complex, stance: Side
-    ) -> tuple[complex, float] | None:
-        """Waypoint for a swinging foot whose straight way would hit the stance foot.
+    def passing_waypoint(self, start: complex, way: Sequence[complex], stance: Side) -> tuple[complex, float] | None:
+        """Waypoint for a swinging foot whose way, or the straight way, would hit the stance foot.
 
         It is beside the stance foot. For a foot that comes from across it is up to `abreast` before that, where the
         toes reach the heel of the stance foot, but still `abreast` ahead of the foot, which needs room to move aside.
 
         Args:
             start: Where the foot left the ground.
-            foot: Position of the swinging foot.
-            foothold: Where it goes.
+            way: Places on the way of the swinging foot, from where it is to its foothold.
             stance: The stance foot.
 
         Returns:
-            The waypoint, and its fraction of the path to the foothold; None if the path is clear.
+            The waypoint, and its fraction of the line to the foothold; None if the way is clear.
         """
+        foot, foothold, outward = way[0], way[-1], OUTWARD[stance]
         if foot.real * foothold.real >= 0.0:
             return None
-        outward, length = OUTWARD[stance], foot.real - foothold.real
+        length = foot.real - foothold.real
+        # The straight way, too: a foot that already moves aside would be released too early, and overshoot.
         beside = foot + foot.real / length * (foothold - foot)
-        if outward * beside.imag >= self.min_width:
+        if all(outward * place.imag >= self.min_step_width(place.real) for place in (beside, *way)):
             return None
         before = clip(abs(foot.real) - self.abreast, 0.0, self.abreast) if self.is_across(start, stance) else 0.0
         x = math.copysign(before, foot.real)

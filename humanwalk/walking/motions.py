@@ -95,11 +95,8 @@ class PlanarMotion(NamedTuple):
         The goal may move from call to call. The mean jerk during `dt` is limited [m/s3]; at the limit it is constant.
         """
         T = max(remaining, dt)
-        end, s = self.after(T), dt / T
-        p, v = goal.position - end.position, T * (goal.velocity - end.velocity)
-        a = T**2 * (goal.acceleration - end.acceleration)
-        # With s from 0 to 1 the quintic is the motion of constant acceleration plus c3 s^3 + c4 s^4 + c5 s^5.
-        c3, c4, c5 = 10.0 * p - 4.0 * v + 0.5 * a, -15.0 * p + 7.0 * v - a, 6.0 * p - 3.0 * v + 0.5 * a
+        c3, c4, c5 = self._quintic(goal, T)
+        s = dt / T
         jerk = (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5)) / T**3
         if abs(jerk) > jerk_limit:
             return self.after(dt, jerk * jerk_limit / abs(jerk))
@@ -109,6 +106,22 @@ class PlanarMotion(NamedTuple):
             straight.velocity + s**2 * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)) / T,
             straight.acceleration + dt * jerk,
         )
+
+    def way(self, goal: PlanarMotion, remaining: float, parts: int) -> list[complex]:
+        """Places at equal times on the quintic that reaches `goal` after `remaining` seconds, from here to there."""
+        c3, c4, c5 = self._quintic(goal, remaining)
+        shares = (i / parts for i in range(parts + 1))
+        return [self.after(s * remaining).position + s**3 * (c3 + s * (c4 + s * c5)) for s in shares]
+
+    def _quintic(self, goal: PlanarMotion, T: float) -> tuple[complex, complex, complex]:
+        """Coefficients of the quintic to `goal`: the motion of constant acceleration plus c3 s^3 + c4 s^4 + c5 s^5.
+
+        s goes from 0 to 1 in the time T.
+        """
+        end = self.after(T)
+        p, v = goal.position - end.position, T * (goal.velocity - end.velocity)
+        a = T**2 * (goal.acceleration - end.acceleration)
+        return 10.0 * p - 4.0 * v + 0.5 * a, -15.0 * p + 7.0 * v - a, 6.0 * p - 3.0 * v + 0.5 * a
 
     def after(self, time: float, jerk: complex = 0.0) -> PlanarMotion:
         """The motion a time later [s] with a constant jerk [m/s3]."""

@@ -13,6 +13,9 @@ from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.swing_clearance import OrdinarySwing, clearance
 
+PARTS = 16
+"""Parts of the way to the foothold between whose ends the swinging foot is compared with the stance foot."""
+
 
 class SwingGoal(NamedTuple):
     """Where a swinging foot goes.
@@ -110,16 +113,16 @@ def _moved(
     foothold, added, jerk_limit = swing.foothold.position, swing.clearance, parameters.swing.jerk_limit
     progress = state.timing.swing_progress(state.elapsed)
     landing, time = parameters.swing.landing(foothold, command.velocity * state.direction), remaining
+    start, *way = map(state.local, (swing.start, *swing.motion.way(landing, max(time, period), PARTS)))
     if progress < added.depart:
         landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining, parameters.clearance.hold)
     elif added.arrive < 1.0:
         landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining, parameters.clearance.hold)
-    start, foot, goal = map(state.local, (swing.start, swing.motion.position, foothold))
-    waypoint = parameters.placement.passing_waypoint(start, foot, goal, state.stance)
+    waypoint = parameters.placement.passing_waypoint(start, way, state.stance)
     if waypoint is None:
         return swing.motion.towards(landing, time, period, jerk_limit)
     point, fraction = waypoint
-    aside = shortest_blend((point - foot).imag, parameters.placement.passing_acceleration)
+    aside = shortest_blend((point - way[0]).imag, parameters.placement.passing_acceleration)
     aside = max(aside, fraction * remaining)
     motion = swing.motion.towards(landing, time + aside - fraction * remaining, period, jerk_limit)
     passing = swing.motion.towards(PlanarMotion(state.world(point)), aside, period, jerk_limit)

@@ -1,4 +1,4 @@
-"""The studies that come with humanwalk can be simulated, and are what their descriptions and docs/robustness.md state."""
+"""The studies that come with humanwalk can be simulated, and are what descriptions and docs/robustness.md state."""
 
 import math
 from dataclasses import replace

@@ -108,18 +108,25 @@ def test_the_foothold_gain_tends_to_one_without_double_support() -> None:
     assert foothold_gain(3.2, 0.2) > foothold_gain(3.2, 0.1) > 1.0
 
 
-@given(
-    st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), st.floats(-0.2, 0.85), sides
-)
-def test_only_a_foot_whose_straight_way_would_hit_the_stance_foot_has_a_waypoint(
-    start: float, x: float, width: float, goal: float, goal_width: float, stance: Side
+ways = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6), st.floats(-0.2, 0.85))
+"""x and width of a foot and of its foothold."""
+
+
+@given(st.floats(-0.2, 0.3), ways, st.floats(0.0, 0.1), sides)
+def test_only_a_foot_whose_way_or_straight_way_would_hit_the_stance_foot_has_a_waypoint(
+    start: float, ends: tuple[float, float, float, float], bend: float, stance: Side
 ) -> None:
     outward = OUTWARD[stance]
-    way = (complex(-0.6, outward * start), complex(x, outward * width), complex(goal, outward * goal_width))
-    waypoint = PLACEMENT.passing_waypoint(*way, stance)
-    beside = np.interp(0.0, *np.transpose(sorted([(x, width), (goal, goal_width)])))
-    assume(abs(beside - PLACEMENT.min_width) > 1e-9)
-    assert (waypoint is not None) == (x * goal < 0.0 and beside < PLACEMENT.min_width)
+    x, width, goal, goal_width = ends
+    share = np.linspace(0.0, 1.0, 9)
+    along, across = x + share * (goal - x), width + share * (goal_width - width) - bend * np.sin(np.pi * share)
+    way = (along + 1j * outward * across).tolist()
+    waypoint = PLACEMENT.passing_waypoint(complex(-0.6, outward * start), way, stance)
+    places = [(0.0, width - x / (goal - x) * (goal_width - width))] if x * goal < 0.0 else []
+    places += zip(along.tolist(), across.tolist(), strict=True)
+    room = min(w - PLACEMENT.min_step_width(place) for place, w in places)
+    assume(abs(room) > 1e-9 and abs(x * goal) > 1e-9)
+    assert (waypoint is not None) == (x * goal < 0.0 and room < 0.0)
     comes_from_across = start < PLACEMENT.min_own_side_offset
     before = np.clip(abs(x) - PLACEMENT.abreast, 0.0, PLACEMENT.abreast) if comes_from_across else 0.0
     passing = math.copysign(before, x)

@@ -82,6 +82,15 @@ def test_half_the_control_period_is_the_same_swing(motion: PlanarMotion, goal: P
         assert got == pytest.approx(expected, abs=1e-6)
 
 
+@given(planar_motions, planar_motions, st.floats(0.05, 0.6))
+def test_the_way_to_a_goal_is_the_swing(motion: PlanarMotion, goal: PlanarMotion, duration: float) -> None:
+    way = motion.way(goal, duration, 4)
+    assert way[0] == motion.position
+    assert way[-1] == pytest.approx(goal.position, abs=1e-6)
+    half = motion.towards(goal, duration, 0.5 * duration, math.inf)
+    assert way[2] == pytest.approx(half.position, abs=1e-6)
+
+
 def test_a_foothold_that_moves_is_reached_too() -> None:
     end = swing_to(lambda t: 0.6 if t < 0.2 else 0.7 + 0.05j, 0.42)[-1]
     assert end.position == pytest.approx(0.7 + 0.05j, abs=1e-6)

@@ -90,7 +90,7 @@ def test_a_foot_that_returns_to_its_tread_clears_the_next_one_over_which_its_toe
 
 
 def passing(start: complex, velocity: complex, goal: complex, phase_rate: float) -> Iterator[complex]:
-    """Places of a foot that starts across and passes the stance foot, in the frame of the step."""
+    """Places of a foot that passes the stance foot, in the frame of the step."""
     state, swing = first_swing(Plane())
     start, goal = (state.stance_foot.position + place for place in (start, goal))
     swing = swing._replace(start=start, motion=PlanarMotion(start, velocity))
@@ -113,3 +113,13 @@ def test_a_foot_from_across_is_aside_before_its_toes_reach_the_heel_of_the_stanc
 def test_a_foot_from_across_is_not_thrown_aside(behind: float, across: float, speed: float, phase_rate: float) -> None:
     for place in passing(complex(behind, across), speed + 0j, 0.4 - 0.09j, phase_rate):
         assert -place.imag < 0.3
+
+
+@given(st.floats(-0.7, -0.5), st.floats(0.1, 0.14), st.floats(0.5, 0.8), st.floats(0.4, 0.7), st.floats(1.0, 1.5))
+def test_a_foot_that_leaves_the_ground_toward_the_stance_foot_passes_it(
+    behind: float, width: float, inward: float, ahead: float, phase_rate: float
+) -> None:
+    """As the outer foot does in a turn: its straight way is clear."""
+    for place in passing(complex(behind, -width), 1.0 + 1j * inward, complex(ahead, -0.15), phase_rate):
+        if abs(place.real) < FOOT_LENGTH:
+            assert -place.imag > FOOT_WIDTH
