@@ -20,6 +20,7 @@ from humanwalk.numerics.stability import round_down
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.asperity_contact import AsperityContact
 from humanwalk.systems.foot_force_observer import FootForceObserver
+from humanwalk.systems.leg_contact_observer import LegContactObserver
 
 
 class Contact(Protocol):
@@ -43,6 +44,8 @@ class Contact(Protocol):
     def add_to(self, world: World) -> None:
         """Add the system `foot_contact` with the outputs foot_forces and friction_use of `FootForceObserver`.
 
+        With leg contact also `leg_contact`, a `LegContactObserver`.
+
         Raises:
             ParameterError: the contact cannot be simulated in this world.
         """
@@ -59,6 +62,12 @@ class _DrakeContact:
     def add_to(self, world: World) -> None:
         observer = FootForceObserver(world.plant, world.scene_graph.model_inspector(), world.terrain)
         world.add("foot_contact", observer, contact_results=world.plant.get_contact_results_output_port())
+        self._observe_legs(world)
+
+    def _observe_legs(self, world: World) -> None:
+        if self.leg_contact:
+            observer = LegContactObserver(world.plant)
+            world.add("leg_contact", observer, contact_results=world.plant.get_contact_results_output_port())
 
 
 @dataclass(frozen=True)
@@ -104,6 +113,7 @@ class AsperityContactModel(_DrakeContact, AsperityParameters):
         )
         world.add("foot_contact", contact, state=world.state)
         world.spatial_forces.append(contact.GetOutputPort("spatial_forces"))
+        self._observe_legs(world)
 
     def _require_stable(self, world: World) -> None:
         """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""

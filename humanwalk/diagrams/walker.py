@@ -22,18 +22,19 @@ from humanwalk.scenario import Scenario, require_scenario
 def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
-    Subsystems by name: plant, scene_graph, body_observer, foot_contact, actuators, pushes, and those of the
-    controller: gait, arms, inverse_kinematics and, where enabled, support, foot_force_balance, upper_body_balance
-    (thesis); command, load_observer, planner, controller (balanced); recording, support (recorded). The actuation adds
-    integral_action (pid) or adaptive_feedforward (adaptive), a subject with an exoskeleton the system exoskeleton.
+    Subsystems by name: plant, scene_graph, body_observer, foot_contact, actuators, pushes and, where enabled,
+    leg_contact; and those of the controller: gait, arms, inverse_kinematics and, where enabled, support,
+    foot_force_balance, upper_body_balance (thesis); command, load_observer, planner, controller (balanced); recording,
+    support (recorded). The actuation adds integral_action (pid) or adaptive_feedforward (adaptive), a subject with an
+    exoskeleton the system exoskeleton.
 
     Exported outputs: state (97), net_actuation (42), contact_results, query_object, and every `Signal` of a subsystem
     under its name: desired_state (84), torque (42), saturated (42), soles (6), com (6), foot_forces (16),
-    friction_use (2), push (3), and those of the controller: ik_status (6), pelvis_reference (13), phase (2),
-    contact_schedule (2), support_wrench (6), foot_shift (12), alpha (4) (thesis); phase (2), contact_schedule (2),
-    command (3), felt_load (4), balance (9), qp_status (3) (balanced); pelvis_reference (13), support_wrench (6)
-    (recorded); and those of the actuation: integral_torque (42) (pid); estimates (84) (adaptive); and
-    exoskeleton_torque (42) of an exoskeleton. Joints come in actuator order.
+    friction_use (2), leg_contact (1), push (3), and those of the controller: ik_status (6), pelvis_reference (13),
+    phase (2), contact_schedule (2), support_wrench (6), foot_shift (12), alpha (4) (thesis); phase (2),
+    contact_schedule (2), command (3), felt_load (4), balance (9), qp_status (3) (balanced); pelvis_reference (13),
+    support_wrench (6) (recorded); and those of the actuation: integral_torque (42) (pid); estimates (84) (adaptive);
+    and exoskeleton_torque (42) of an exoskeleton. Joints come in actuator order.
 
     Exported inputs: feedforward (42), torque added to every actuator's law [N m]; optional, and only where the
     controller has none of its own. exoskeleton_command (42), torque added to that of an exoskeleton [N m]; optional.

@@ -16,6 +16,7 @@ from humanwalk.body import SIDES
 from humanwalk.measures.events import CONTACT_ON_N, stretches
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
+from humanwalk.quantity import GRAVITY
 from humanwalk.walking.walking_reference import Phase
 
 WINDOW = 4.0
@@ -32,6 +33,9 @@ SLIDING = 0.8
 
 MIN_SLIP = 0.05
 """Distance that a sole slides in one go [m]; in sound walks it stays below 0.04 m."""
+
+MIN_LEG_FORCE = 0.1
+"""Force between the legs from which on it counts as a cause [body weights] (our choice)."""
 
 MAX_DCM_ERROR = 0.3
 """Distance of the DCM from its reference at a touchdown, or in standing, from which balance is lost [m].
@@ -146,6 +150,13 @@ def first_slip(signals: pa.Table, mass: float) -> _Found:
     return min(found, default=None)
 
 
+def first_touch_of_legs(signals: pa.Table, mass: float) -> _Found:
+    """The first time that the legs hit each other with `MIN_LEG_FORCE`."""
+    time, force = signals[TIME].to_numpy(), signals["leg_contact.force_N"].to_numpy()
+    rows = np.flatnonzero(force > MIN_LEG_FORCE * mass * GRAVITY)
+    return (float(time[rows[0]]), f"the legs hit each other at {time[rows[0]]:.2f} s") if rows.size else None
+
+
 def first_step_out_of_reach(signals: pa.Table, mass: float) -> _Found:
     """The first touchdown that leaves the DCM farther than `MAX_DCM_ERROR` from its reference."""
     text = "the foot that landed at {time:.2f} s left the capture point (DCM) {error:.2f} m off its reference"
@@ -170,6 +181,7 @@ _DCM = (*(f"{point}.{axis}_m" for point in ("dcm", "dcm_reference") for axis in 
 CAUSES: dict[str, tuple[tuple[str, ...], Callable[[pa.Table, float], _Found]]] = {
     "push": (("push.force_x_N", "push.force_y_N"), strongest_push),
     "slip": (("right_foot.friction_use", "left_foot.friction_use"), first_slip),
+    "legs that hit each other": (("leg_contact.force_N",), first_touch_of_legs),
     "foothold out of reach": (_DCM, first_step_out_of_reach),
     "balance lost in standing": (_DCM, balance_lost_standing),
     "QP failure": (("qp.failures_in_a_row",), first_qp_failures),

@@ -65,6 +65,7 @@ def landing(time: Array) -> Array:
 EVENTS: dict[str, Any] = {
     "push": {"push.force_y_N": during(8.0, 8.1, -600.0)},
     "slip": slide(0.2),
+    "legs that hit each other": {"leg_contact.force_N": during(8.0, 8.1, 300.0)},
     "foothold out of reach": {"planner.phase": landing, "dcm.x_m": during(7.0, END, 0.5)},
     "balance lost in standing": {
         "planner.phase": constant(Phase.STAND.value),
@@ -120,6 +121,7 @@ def test_what_happens_while_the_body_goes_down_or_long_before_does_not_count() -
         {**slide(0.2), "right_foot.force_z_N": during(8.0, 8.2, 10.0)},
         {**slide(0.2), "right_foot.friction_use": during(8.0, 8.2, 0.5)},
         {"planner.phase": landing, "dcm.x_m": during(7.0, END, 0.2)},
+        {"leg_contact.force_N": during(8.0, 8.1, 20.0)},
         {"dcm.x_m": during(8.0, 8.3, 0.5)},
         {"qp.failures_in_a_row": during(8.0, 8.2, 1.0)},
     ],
@@ -129,6 +131,7 @@ def test_what_happens_while_the_body_goes_down_or_long_before_does_not_count() -
         "unloaded foot",
         "rolling foot",
         "foothold near",
+        "legs that brush",
         "recovered in swing",
         "one failure",
     ],
