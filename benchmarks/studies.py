@@ -151,6 +151,17 @@ def _seeds(name: str) -> str:
     return study_section(name, lambda rows: table(headings, lines(rows)))
 
 
+def balance_turns() -> str:
+    def lines(rows: list[Row]) -> Iterator[list[str]]:
+        for turn, walks in groupby(rows, key=lambda row: row["turn"]):
+            runs = list(walks)
+            off = [100.0 * row["path_deviation_m"] for row in runs if row["survived"]]
+            yield [turn, *_survival(runs), f"{min(off):.0f} to {max(off):.0f}" if off else "-"]
+
+    headings = ["turn", "survived", "95 % interval", "off the path cm"]
+    return study_section("balance_turns", lambda rows: table(headings, lines(rows)))
+
+
 def balance_pushes() -> str:
     return study_section("balance_pushes", _pushes_by_time)
 
@@ -411,6 +422,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_fast,
         balance_fast_pushes,
         balance_paths,
+        balance_turns,
         balance_bodies,
         balance_pushes,
         balance_pushes_60,

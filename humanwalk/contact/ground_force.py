@@ -32,8 +32,30 @@ class FootForce(NamedTuple):
 
     @property
     def vector(self) -> Array:
-        """Force, center of pressure, free moment, loaded (1 or 0); shape (8,)."""
+        """Force, center of pressure, free moment, loaded (1 or 0); shape (8,). `FootForces` reads it."""
         return np.array((*self.f_W, *self.p_WCop, self.free_moment, self.loaded))
+
+
+class FootForces(NamedTuple):
+    """Ground reactions on the right and the left foot, from a port of 16 numbers.
+
+    Attributes:
+        f_W: Force in W [N], shape (2, 3).
+        p_WCop: Center of pressure in W [m], shape (2, 3); zero while unloaded.
+        free_moment: Moment about the surface normal through the center of pressure [N m], shape (2,).
+        loaded: 1 for a loaded foot, else 0, shape (2,).
+    """
+
+    f_W: Array
+    p_WCop: Array
+    free_moment: Array
+    loaded: Array
+
+    @staticmethod
+    def of(values: Array) -> "FootForces":
+        """The reactions from the output `foot_forces`, shape (16,): `FootForce.vector` of both feet."""
+        feet = values.reshape(2, 8)
+        return FootForces(feet[:, :3], feet[:, 3:6], feet[:, 6], feet[:, 7])
 
 
 NO_FORCE = FootForce(np.zeros(3), np.zeros(3), 0.0, False, 0.0)

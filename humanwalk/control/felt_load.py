@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body.carried_load import NO_LOAD
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.numerics import Array
 from humanwalk.quantity import quantity
 
@@ -35,21 +36,21 @@ class LoadFeeling:
     hand. It limits how a push, which turns the body, too, moves the load that is felt."""
 
 
-def unexplained_wrench(momentum_rate: Array, foot_forces: Array, com: Array, weight: float) -> Array:
+def unexplained_wrench(momentum_rate: Array, forces: FootForces, com: Array, weight: float) -> Array:
     """Moment about the center of mass [N m] and force [N] on the body, in W, that ground and weight do not explain.
 
     Args:
         momentum_rate: Of the angular momentum about the center of mass [N m] and of the momentum [N], in W, shape (6,).
-        foot_forces: See `FootForceObserver`, shape (2, 8).
+        forces: Ground reactions on the feet.
         com: Center of mass in W [m], shape (3,).
         weight: Of the body [N].
 
     Returns:
         Shape (6,).
     """
-    force, pressure, free_moment = foot_forces[:, :3], foot_forces[:, 3:6], foot_forces[:, 6]
-    explained = np.concatenate((np.cross(pressure - com, force).sum(axis=0), force.sum(axis=0)))
-    explained[2] += free_moment.sum()
+    moments = np.cross(forces.p_WCop - com, forces.f_W)
+    explained = np.concatenate((moments.sum(axis=0), forces.f_W.sum(axis=0)))
+    explained[2] += forces.free_moment.sum()
     explained[5] -= weight
     return momentum_rate - explained
 

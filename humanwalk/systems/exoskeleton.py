@@ -9,9 +9,9 @@ from pydrake.systems.framework import BasicVector, Context, DiscreteValues, Even
 from humanwalk.body import SIDES
 from humanwalk.body.devices import Assistance
 from humanwalk.body.joint_map import JointMap
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.numerics import Array
 from humanwalk.systems.signal import Signal
-from humanwalk.walking.walking_reference import FORCE_Z
 
 TOUCHDOWN_FORCE = 50.0
 """Vertical force at which a heel switch closes [N] (our choice)."""
@@ -66,7 +66,7 @@ class Exoskeleton(LeafSystem):
 
     def _read_switches(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         time = context.get_time()
-        loads = self._foot_forces.Eval(context).reshape(2, 8)[:, FORCE_Z]
+        loads = FootForces.of(self._foot_forces.Eval(context)).f_W[:, 2]
         feet = context.get_discrete_state(self._switches).value().reshape(2, 3).copy()
         for foot, load in zip(feet, loads, strict=True):
             was_loaded, touchdown, _ = foot

@@ -8,6 +8,7 @@ from pydrake.systems.framework import AbstractParameterIndex, Context, InputPort
 
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import CHEST, PELVIS
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.systems.force_arrow import ForceArrow
@@ -67,9 +68,8 @@ class FollowingView(LeafSystem):
             ground = float(self._terrain.height(p_WP[:2] + AROUND).mean())
             lateral = p_WP[1] - np.clip(p_WP[1], -LATERAL_SLACK, LATERAL_SLACK)
             self._meshcat.SetTransform(SCENE, RigidTransform(-np.array([p_WP[0], lateral, ground])), time)
-        feet = self._value(self._foot_forces, context).reshape(2, 8)
-        for arrow, foot in zip(self._foot_arrows, feet, strict=True):
-            f_W, p_WCop, loaded = foot[0:3], foot[3:6], bool(foot[7])
+        feet = FootForces.of(self._value(self._foot_forces, context))
+        for arrow, f_W, p_WCop, loaded in zip(self._foot_arrows, feet.f_W, feet.p_WCop, feet.loaded, strict=True):
             arrow.show(f_W, p_WCop if loaded else None, time)
         push = self._value(self._push, context)
         self._push_arrow.show(push, _position(scene, CHEST) if push.any() else None, time, head=True)

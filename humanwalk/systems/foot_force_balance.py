@@ -4,6 +4,7 @@ import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, EventStatus, LeafSystem
 
 from humanwalk.body import SIDES
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.control.balance_levels import FootForceBalanceParameters, desired_foot_forces, foot_shift_rate
 from humanwalk.systems.signal import Signal, xyz
 
@@ -52,7 +53,7 @@ class FootForceBalance(LeafSystem):
     def _update(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         shift, rate = context.get_discrete_state(self._state).value().reshape(2, 2, 3)
         shift = shift + self._period * rate
-        measured = self._foot_forces.Eval(context).reshape(2, 8)[:, :3]
+        measured = FootForces.of(self._foot_forces.Eval(context)).f_W
         desired = desired_foot_forces(self._schedule.Eval(context), self._weight)
         rate = foot_shift_rate(shift, desired - measured, self._parameters)
         discrete.set_value(self._state, np.concatenate((shift, rate)).ravel())

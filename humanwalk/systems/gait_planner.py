@@ -13,6 +13,7 @@ from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.contact import SoleExtent
 from humanwalk.body.hanging_arm import HangingArm
 from humanwalk.body.upright import passive_ankles, upright
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.systems.load_observer import load_at
 from humanwalk.systems.signal import Signal
 from humanwalk.terrain.terrain import Ground
@@ -115,7 +116,7 @@ class GaitPlanner(LeafSystem):
 
     def _body(self, context: Context, ground: Ground) -> BodyState:
         ankles = self._ankles.Eval(context).reshape(2, 5, 3)
-        forces = self._foot_forces.Eval(context).reshape(2, 8)
+        forces = FootForces.of(self._foot_forces.Eval(context))
         load = load_at(self._load, context)
         body = BodyState.measured(self._com.Eval(context), ankles, forces, ground)
         right, left = (self._arms[side].freedom(load) for side in SIDES)

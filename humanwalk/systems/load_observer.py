@@ -7,6 +7,7 @@ from pydrake.systems.framework import Context, DiscreteValues, EventStatus, Inpu
 
 from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.limbs import CHEST
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.control.felt_load import LoadFeeling, felt_load, limited, unexplained_wrench
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
@@ -66,7 +67,7 @@ class LoadObserver(LeafSystem):
         R_WH = yaw_pitch(math.atan2(forward[1], forward[0]), 0.0)
 
         rate = (momentum - context.get_discrete_state(self._momentum).value()) / self._period
-        forces = self._foot_forces.Eval(context).reshape(2, 8)
+        forces = FootForces.of(self._foot_forces.Eval(context))
         weight = self._mass * self._gravity
         now = limited(unexplained_wrench(rate, forces, com, weight), self._feeling.largest * weight)
         wrench = context.get_discrete_state(self._wrench).value()

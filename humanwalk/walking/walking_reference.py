@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 
 from humanwalk.body import Side
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import GRAVITY
@@ -21,12 +22,6 @@ from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.motions import PlanarMotion, ScalarMotion
 
 Vector = Sequence[float]
-
-FORCE_Z = 2
-"""Element of a foot in `FootForceObserver`'s output that holds the vertical force."""
-
-PRESSURE = slice(3, 6)
-"""Elements that hold the center of pressure."""
 
 
 class Phase(Enum):
@@ -102,19 +97,19 @@ class BodyState:
         return self.right if side == "Right" else self.left
 
     @staticmethod
-    def measured(com: Array, ankles: Array, foot_forces: Array, ground: Ground) -> "BodyState":
+    def measured(com: Array, ankles: Array, forces: FootForces, ground: Ground) -> "BodyState":
         """Return the measured state.
 
         Args:
             com: Position [m] and velocity [m/s] of the center of mass in W, shape (6,).
             ankles: See `BodyObserver`, shape (2, 5, 3).
-            foot_forces: See `FootForceObserver`, shape (2, 8).
+            forces: Ground reactions on the feet.
             ground: What is known of the ground.
         """
         p_W, v_W, forward_W, normal_W, w_W = ankles.swapaxes(0, 1)
         R_SW = ground.axes(p_W[:, :2])
-        motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), foot_forces[:, FORCE_Z])
-        axes = (forward_W, normal_W, foot_forces[:, PRESSURE])
+        motions = (p_W, v_W, np.matvec(R_SW, forward_W), np.matvec(R_SW, w_W), forces.f_W[:, 2])
+        axes = (forward_W, normal_W, forces.p_WCop)
         x, y, z, vx, vy, _ = com.tolist()
         right, left = map(_foot, *(part.tolist() for part in motions), *axes)
         return BodyState(complex(x, y), complex(vx, vy), z, right, left)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.control.felt_load import LoadFeeling, felt_load, limited, unexplained_wrench
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -28,7 +29,7 @@ def test_ground_and_weight_explain_how_a_body_without_a_load_moves(seed: int) ->
     force = feet[:, :3].sum(axis=0) - (0.0, 0.0, MASS * GRAVITY)
     moment = sum(np.cross(foot[3:6] - com, foot[:3]) + np.array((0.0, 0.0, foot[6])) for foot in feet)
     rate = np.concatenate((moment, force))
-    np.testing.assert_allclose(unexplained_wrench(rate, feet, com, MASS * GRAVITY), 0.0, atol=1e-9)
+    np.testing.assert_allclose(unexplained_wrench(rate, FootForces.of(feet), com, MASS * GRAVITY), 0.0, atol=1e-9)
 
 
 @given(mass=HEAVY, along=OFFSETS, across=OFFSETS)
@@ -38,7 +39,7 @@ def test_a_load_that_stands_still_is_felt_where_it_is(mass: float, along: float,
     place = com[:2] + mass / (MASS + mass) * np.array((along, across))
     feet = np.zeros((2, 8))
     feet[:, 2], feet[:, 3:5] = (MASS + mass) * GRAVITY / 2, place
-    wrench = unexplained_wrench(np.zeros(6), feet, com, MASS * GRAVITY)
+    wrench = unexplained_wrench(np.zeros(6), FootForces.of(feet), com, MASS * GRAVITY)
     np.testing.assert_allclose(wrench, weight_at(mass, along, across), atol=1e-9)
     np.testing.assert_allclose(felt_load(wrench, MASS, GRAVITY, FEELING), (mass, along, across, 0.0), atol=1e-9)
 

@@ -12,6 +12,7 @@ from pydrake.systems.framework import Context
 
 from humanwalk.body.limbs import PELVIS
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.numerics import Array
 from humanwalk.numerics.rotation import yaw_pitch
 from humanwalk.sides import SIDES
@@ -123,7 +124,7 @@ def test_yaw_and_pitch_of_the_feet_are_relative_to_the_terrain(
     observed = observer.CreateDefaultContext()
     observer.GetInputPort("state").FixValue(observed, plant.GetPositionsAndVelocities(context))
     ankles = observer.GetOutputPort("ankles").Eval(observed).reshape(2, 5, 3)
-    forces = np.arange(16.0).reshape(2, 8)
+    forces = FootForces.of(np.arange(16.0))
     body = BodyState.measured(observer.GetOutputPort("com").Eval(observed), ankles, forces, terrain)
     assert (body.right.force, body.left.force) == (2.0, 10.0)
     assert body.right.pressure.tolist() == [3.0, 4.0, 5.0]
@@ -147,7 +148,7 @@ def test_velocities_of_the_ankles_are_the_rates_of_their_poses(
         context = observer.CreateDefaultContext()
         observer.GetInputPort("state").FixValue(context, np.concatenate((q, v)))
         ankles = observer.GetOutputPort("ankles").Eval(context).reshape(2, 5, 3)
-        return ankles, BodyState.measured(np.zeros(6), ankles, np.zeros((2, 8)), terrain)
+        return ankles, BodyState.measured(np.zeros(6), ankles, FootForces.of(np.zeros(16)), terrain)
 
     (ankles, body), (ahead, body_ahead), (behind, body_behind) = (observed(q + s * h * q_rate) for s in (0, 1, -1))
     velocity, x, z, w = ankles[:, 1:].swapaxes(0, 1)

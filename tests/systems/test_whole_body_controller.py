@@ -11,6 +11,7 @@ from humanwalk.body.contact import sole_extent
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import ARMS, HEAD_YAW, LEGS
 from humanwalk.body.skeleton import Skeleton
+from humanwalk.contact.ground_force import FootForces
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.numerics import Array
 from humanwalk.sides import SIDES, Side
@@ -23,7 +24,7 @@ from humanwalk.walking.step_planner import StepPlanner
 from humanwalk.walking.walking_reference import BodyState, WalkingReference
 
 PERIOD = 0.004
-LOADED = np.tile((0.0, 0.0, 350.0, 0.0, 0.0, 0.0, 0.0, 1.0), (2, 1))
+LOADED = FootForces.of(np.tile((0.0, 0.0, 350.0, 0.0, 0.0, 0.0, 0.0, 1.0), 2))
 
 
 @pytest.fixture
