@@ -31,11 +31,6 @@ from humanwalk.walking.zmp_reference import desired_gait
 STOP_TURN = 0.0265
 """Commanded turn in the time of a step up to which a step is the last one [rad]."""
 
-
-SHIFT_MARGIN = 0.01
-"""Distance by which the DCM may leave the base of support in the weight shift [m] (our choice): at the end of the
-weight shift before a walk at 1 m/s it is at the front of the base of support."""
-
 NO_PREVIEW = Preview()
 """The plan before the first step."""
 
@@ -190,7 +185,7 @@ class PhaseTransitions:
     def _is_lost(self, state: PlannerState, dcm: complex) -> bool:
         """Whether the DCM is outside the base of support of both feet, where standing cannot hold the body."""
         outside = self._parameters.support.outside(dcm, state.right.position, state.heading, state.left.position)
-        return abs(outside) > (SHIFT_MARGIN if state.phase is Phase.WEIGHT_SHIFT else 0.0)
+        return abs(outside) > (self._parameters.shift_margin if state.phase is Phase.WEIGHT_SHIFT else 0.0)
 
     def _can_stand(self, right: Foothold, left: Foothold, heading: float, dcm: complex) -> bool:
         """Whether the feet are side by side, and their base of support contains the DCM."""

@@ -33,9 +33,6 @@ from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import descent_shares, desired_gaits, pivot_lead, remaining_pivot
 
-MIN_FORCE = 50.0
-"""Vertical force from which on the center of pressure under a foot is known [N] (our choice)."""
-
 
 class Balance(NamedTuple):
     """Zero-moment point, centroidal moment pivot, measured DCM and nominal DCM [m]."""
@@ -212,7 +209,7 @@ class StepPlanner:
         """
         foot = body.foot(state.stance)
         is_passive = state.phase is Phase.SINGLE_SUPPORT and state.stance in self._passive_ankles
-        if not is_passive or foot.force < MIN_FORCE:
+        if not is_passive or foot.force < self.parameters.timing.loaded_force:
             return None
         return complex(foot.pressure[0], foot.pressure[1])
 

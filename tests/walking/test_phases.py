@@ -15,7 +15,7 @@ from humanwalk.walking.command import Command
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.lipm import divergent_component
 from humanwalk.walking.parameters import StepPlannerParameters
-from humanwalk.walking.phases import SHIFT_MARGIN, STOP_TURN, PhaseTransitions
+from humanwalk.walking.phases import STOP_TURN, PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
@@ -208,7 +208,7 @@ def test_a_push_in_standing_leads_to_a_careful_step_on_the_foot_nearer_to_the_dc
     assert len(caught.preview.footholds) > 0
 
 
-@pytest.mark.parametrize("phase, margin", [(Phase.STAND, 0.0), (Phase.WEIGHT_SHIFT, SHIFT_MARGIN)])
+@pytest.mark.parametrize("phase, margin", [(Phase.STAND, 0.0), (Phase.WEIGHT_SHIFT, PARAMETERS.shift_margin)])
 def test_the_dcm_may_leave_the_base_of_support_by_a_margin_in_the_weight_shift_only(
     phase: Phase, margin: float
 ) -> None:
