@@ -96,7 +96,9 @@ class StepPlacement:
         """Whether a foot stands across the stance foot, or nearly so."""
         return OUTWARD[stance] * foot.imag < self.min_own_side_offset
 
-    def passing_waypoint(self, start: complex, way: Sequence[complex], stance: Side) -> tuple[complex, float] | None:
+    def passing_waypoint(
+        self, start: complex, way: Sequence[complex], stance: Side, toe_in: float = 0.0
+    ) -> tuple[complex, float] | None:
         """Waypoint for a swinging foot whose way, or the straight way, would hit the stance foot.
 
         It is beside the stance foot. For a foot that comes from across it is up to `abreast` before that, where the
@@ -106,6 +108,7 @@ class StepPlacement:
             start: Where the foot left the ground.
             way: Places on the way of the swinging foot, from where it is to its foothold.
             stance: The stance foot.
+            toe_in: Distance by which its toes are nearer to the stance foot than its ankle [m].
 
         Returns:
             The waypoint, and its fraction of the line to the foothold; None if the way is clear.
@@ -116,11 +119,11 @@ class StepPlacement:
         length = foot.real - foothold.real
         # The straight way, too: a foot that already moves aside would be released too early, and overshoot.
         beside = foot + foot.real / length * (foothold - foot)
-        if all(outward * place.imag >= self.min_step_width(place.real) for place in (beside, *way)):
+        if all(outward * place.imag - toe_in >= self.min_step_width(place.real) for place in (beside, *way)):
             return None
         before = clip(abs(foot.real) - self.abreast, 0.0, self.abreast) if self.is_across(start, stance) else 0.0
         x = math.copysign(before, foot.real)
-        return complex(x, outward * self.passing_distance), (foot.real - x) / length
+        return complex(x, outward * (self.passing_distance + toe_in)), (foot.real - x) / length
 
     def double_support_excess(self, desired: complex, stance: Side, foot: complex) -> float:
         """Distance by which a desired foothold calls for a faster clock in double support [m].

@@ -3,15 +3,21 @@
 Points of the level plane are complex numbers x + iy [m].
 """
 
+import math
 from typing import NamedTuple
 
+from humanwalk.numerics.scalars import wrapped
 from humanwalk.walking.command import Command
+from humanwalk.walking.foot_placement import OUTWARD
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion, shortest_blend
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.swing_clearance import OrdinarySwing, clearance
+
+TURNED = 0.5
+"""Share of its angle to the stance foot at lift-off that a foot still has when its toes reach the heel of that foot."""
 
 PARTS = 16
 """Parts of the way to the foothold between whose ends the swinging foot is compared with the stance foot."""
@@ -54,7 +60,8 @@ def advanced_swing(
     is_first = state.elapsed == swing.lift_off
     if state.timing.step - state.elapsed > parameters.placement.freeze_time:
         swing = _with_foothold(state, swing, goal, parameters, footholds, None if is_first else period)
-    return swing._replace(motion=_moved(state, swing, goal.remaining, command, parameters, period))
+    toe_in = footholds.sole.front * math.sin(max(TURNED * _inward(state, swing), 0.0))
+    return swing._replace(motion=_moved(state, swing, goal.remaining, command, parameters, period, toe_in))
 
 
 def _with_foothold(
@@ -98,6 +105,11 @@ def _origin(state: PlannerState, swing: Swing, landing: Foothold) -> Foothold:
     return stood._replace(position=swing.start) if stood.face.covers_as(landing.face) else stood
 
 
+def _inward(state: PlannerState, swing: Swing) -> float:
+    """Angle by which the foot pointed toward the side of the stance foot at lift-off, relative to this step [rad]."""
+    return -OUTWARD[state.stance] * wrapped(swing.start_yaw - state.heading)
+
+
 def _moved(
     state: PlannerState,
     swing: Swing,
@@ -105,6 +117,7 @@ def _moved(
     command: Command,
     parameters: StepPlannerParameters,
     period: float,
+    toe_in: float,
 ) -> PlanarMotion:
     """Motion over the level plane: on the way to the foothold, and around the stance foot.
 
@@ -118,7 +131,7 @@ def _moved(
         landing, time = PlanarMotion(swing.start), added.time_to_depart(progress, remaining, parameters.clearance.hold)
     elif added.arrive < 1.0:
         landing, time = PlanarMotion(foothold), added.time_to_arrive(progress, remaining, parameters.clearance.hold)
-    waypoint = parameters.placement.passing_waypoint(start, way, state.stance)
+    waypoint = parameters.placement.passing_waypoint(start, way, state.stance, toe_in)
     if waypoint is None:
         return swing.motion.towards(landing, time, period, jerk_limit)
     point, fraction = waypoint

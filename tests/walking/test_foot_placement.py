@@ -112,19 +112,19 @@ ways = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6
 """x and width of a foot and of its foothold."""
 
 
-@given(st.floats(-0.2, 0.3), ways, st.floats(0.0, 0.1), sides)
+@given(st.floats(-0.2, 0.3), ways, st.floats(0.0, 0.1), st.floats(0.0, 0.1), sides)
 def test_only_a_foot_whose_way_or_straight_way_would_hit_the_stance_foot_has_a_waypoint(
-    start: float, ends: tuple[float, float, float, float], bend: float, stance: Side
+    start: float, ends: tuple[float, float, float, float], bend: float, toe_in: float, stance: Side
 ) -> None:
     outward = OUTWARD[stance]
     x, width, goal, goal_width = ends
     share = np.linspace(0.0, 1.0, 9)
     along, across = x + share * (goal - x), width + share * (goal_width - width) - bend * np.sin(np.pi * share)
     way = (along + 1j * outward * across).tolist()
-    waypoint = PLACEMENT.passing_waypoint(complex(-0.6, outward * start), way, stance)
+    waypoint = PLACEMENT.passing_waypoint(complex(-0.6, outward * start), way, stance, toe_in)
     places = [(0.0, width - x / (goal - x) * (goal_width - width))] if x * goal < 0.0 else []
     places += zip(along.tolist(), across.tolist(), strict=True)
-    room = min(w - PLACEMENT.min_step_width(place) for place, w in places)
+    room = min(w - toe_in - PLACEMENT.min_step_width(place) for place, w in places)
     assume(abs(room) > 1e-9 and abs(x * goal) > 1e-9)
     assert (waypoint is not None) == (x * goal < 0.0 and room < 0.0)
     comes_from_across = start < PLACEMENT.min_own_side_offset
@@ -132,7 +132,7 @@ def test_only_a_foot_whose_way_or_straight_way_would_hit_the_stance_foot_has_a_w
     passing = math.copysign(before, x)
     if waypoint is not None:
         point, fraction = waypoint
-        assert point == complex(passing, outward * PLACEMENT.passing_distance)
+        assert point == complex(passing, outward * (PLACEMENT.passing_distance + toe_in))
         assert x + fraction * (goal - x) == pytest.approx(passing, abs=1e-9)
 
 

@@ -1,5 +1,6 @@
 """The swinging foot clears what it will step over, and the other leg."""
 
+import math
 from collections.abc import Iterator
 
 import pytest
@@ -17,7 +18,7 @@ from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.phases import PhaseTransitions
 from humanwalk.walking.planner_state import PlannerState, Swing
 from humanwalk.walking.preview import FootholdPlanner
-from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
+from humanwalk.walking.swing_motion import TURNED, SwingGoal, advanced_swing
 from humanwalk.walking.walking_reference import BodyState, FootState, Phase
 
 PARAMETERS = StepPlannerParameters()
@@ -89,11 +90,11 @@ def test_a_foot_that_returns_to_its_tread_clears_the_next_one_over_which_its_toe
         assert not any(added.lift)
 
 
-def passing(start: complex, velocity: complex, goal: complex, phase_rate: float) -> Iterator[complex]:
-    """Places of a foot that passes the stance foot, in the frame of the step."""
+def passing(start: complex, velocity: complex, goal: complex, phase_rate: float, yaw: float = 0.0) -> Iterator[complex]:
+    """Places of a foot that passes the stance foot, in the frame of the step; `yaw` is that at lift-off."""
     state, swing = first_swing(Plane())
     start, goal = (state.stance_foot.position + place for place in (start, goal))
-    swing = swing._replace(start=start, motion=PlanarMotion(start, velocity))
+    swing = swing._replace(start=start, start_yaw=yaw, motion=PlanarMotion(start, velocity))
     while (remaining := (state.timing.step - state.elapsed) / phase_rate) > PERIOD:
         swing = advanced_swing(state, swing, SwingGoal(goal, goal, remaining), WALK, PARAMETERS, FOOTHOLDS, PERIOD)
         state = state._replace(elapsed=state.elapsed + phase_rate * PERIOD, swing=swing)
@@ -123,3 +124,18 @@ def test_a_foot_that_leaves_the_ground_toward_the_stance_foot_passes_it(
     for place in passing(complex(behind, -width), 1.0 + 1j * inward, complex(ahead, -0.15), phase_rate):
         if abs(place.real) < FOOT_LENGTH:
             assert -place.imag > FOOT_WIDTH
+
+
+@given(st.floats(-0.7, -0.5), st.floats(0.11, 0.14), st.floats(0.0, 0.35), st.floats(0.4, 0.7))
+def test_a_foot_whose_toes_point_toward_the_stance_foot_passes_it_farther_away(
+    behind: float, width: float, yaw: float, ahead: float
+) -> None:
+    toe_in = FOOTHOLDS.sole.front * math.sin(TURNED * yaw)
+    for place in passing(complex(behind, -width), 1.0 + 0j, complex(ahead, -0.1), 1.0, yaw):
+        if abs(place.real) < FOOT_LENGTH:
+            assert -place.imag > FOOT_WIDTH + toe_in
+
+
+def test_a_foot_whose_toes_point_outward_keeps_its_way() -> None:
+    ends = -0.6 - 0.12j, 1.0 + 0j, 0.6 - 0.1j, 1.0
+    assert list(passing(*ends, yaw=-0.3)) == list(passing(*ends, yaw=0.0))
