@@ -153,6 +153,7 @@ class PhaseTransitions:
             old_heading=state.heading,
             path=path,
             turn=beside_foot.turn,
+            next_turn=beside_foot.turn,
             path_correction=following.correction(path, path.nearest(midpoint, command), midpoint, command),
             height=state.height,
             height_rate=state.height_rate,

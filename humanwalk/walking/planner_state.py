@@ -60,7 +60,8 @@ class PlannerState(NamedTuple):
         heading, old_heading: Headings of this step and of the one before [rad].
         path: The commanded path.
         height, height_rate: Mean height of the center of mass above the support [m, m/s].
-        turn: Turn rate of the path beside the stance foot [rad/s].
+        turn: Turn rate of this step: change of the heading to the next step over its duration [rad/s].
+        next_turn: Turn rate of the steps after it [rad/s].
         path_correction: Velocity of this step in addition to the commanded one [m/s].
         steps: Number of steps since standing.
         early: Time by which the last step was shorter than planned [s].
@@ -85,6 +86,7 @@ class PlannerState(NamedTuple):
     height: float
     height_rate: float = 0.0
     turn: float = 0.0
+    next_turn: float = 0.0
     path_correction: complex = 0.0
     steps: int = 0
     early: float = 0.0

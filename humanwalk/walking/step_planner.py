@@ -31,7 +31,7 @@ from humanwalk.walking.support import SupportMotion, support_motion
 from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
-from humanwalk.walking.zmp_reference import descent_shares, desired_gaits, pivot_lead, remaining_pivot
+from humanwalk.walking.zmp_reference import descent_shares, desired_gaits, pivot_lead, remaining_pivot, turned
 
 
 class Balance(NamedTuple):
@@ -131,6 +131,8 @@ class StepPlanner:
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
+        # On irregular footholds the command changes at touchdown only.
+        state = state if preview.command else turned(state, command)
         command = (preview.command or command).at_pace(preview.pace)
         gait, *following = desired_gaits(state, command, p)
 

@@ -4,6 +4,7 @@ import cmath
 from dataclasses import replace
 from itertools import pairwise
 
+from humanwalk.numerics.scalars import wrapped
 from humanwalk.walking.command import Command
 from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment, remainder
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -17,6 +18,19 @@ def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tu
     feet = (state.stance_foot, *state.preview.footholds)
     shares = [parameters.swing.descent_share(start.step_to(goal)) for start, goal in pairwise(feet)]
     return (*shares, *(0.0,) * (STEPS - len(shares)))
+
+
+def turned(state: PlannerState, command: Command) -> PlannerState:
+    """The state whose steps turn as the path requires that the command of now describes.
+
+    A turn that begins within a step would else be known at the next touchdown, when the DCM is beside its place.
+    """
+    step = state.timing.step
+    if abs(command.velocity) < state.path.min_speed:
+        return state
+    next_foot = state.world(command.velocity * step * cmath.exp(0.5j * state.turn * step))
+    beside = state.path.nearest(next_foot, command)
+    return state._replace(turn=wrapped(beside.heading - state.heading) / step, next_turn=beside.turn)
 
 
 def desired_gait(
@@ -59,15 +73,16 @@ def desired_gaits(state: PlannerState, command: Command, parameters: StepPlanner
 
     A step that takes longer begins with a DCM that is nearer to its stance foot.
     """
-    gaits = []
+    gaits, turn = [], state.turn
     for duration, descent in zip((1.0, *state.preview.durations), descent_shares(state, parameters), strict=True):
         timed = state._replace(
             timing=state.timing.stretched(duration),
             path_correction=state.path_correction / duration,
-            turn=state.turn / duration,
+            turn=turn / duration,
         )
         speed = replace(command, forward=command.forward / duration, sideways=command.sideways / duration)
         gaits.append(desired_gait(timed, speed, parameters, descent))
+        turn = state.next_turn
     return tuple(gaits)
 
 

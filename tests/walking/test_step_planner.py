@@ -168,6 +168,16 @@ def test_a_turn_turns_the_feet_and_the_walk() -> None:
     assert cmath.phase(body.com_velocity) == pytest.approx(state.heading, abs=0.6)
 
 
+@pytest.mark.parametrize("begin", np.linspace(5.0, 6.1, 7))
+@pytest.mark.parametrize("speed", [0.6, 1.0, 1.4])
+def test_a_turn_that_begins_at_any_time_leaves_the_dcm_near_its_place(speed: float, begin: float) -> None:
+    def command(time: float) -> Command:
+        return Command(min(0.4 * time, speed), 0.0, min(max(0.5 * (time - begin), 0.0), 0.4))
+
+    walked = pendulum_walk(planner(), command, begin + 2.0)
+    assert max(state.largest_error for time, state, _, _ in walked if time > begin) < 0.1
+
+
 @pytest.mark.parametrize("wait", [2.0, 8.0])
 def test_a_turn_too_slow_for_steps_does_not_turn_the_path_of_a_standing_walker(wait: float) -> None:
     command = lambda time: Command(0.5 if time > wait else 0.0, 0.0, 0.04 if time < wait else 0.0)  # noqa: E731

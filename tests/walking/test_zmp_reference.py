@@ -24,6 +24,7 @@ from humanwalk.walking.zmp_reference import (
     desired_gaits,
     pivot_lead,
     remaining_pivot,
+    turned,
 )
 
 PARAMETERS = StepPlannerParameters()
@@ -64,6 +65,42 @@ def test_every_step_has_at_least_the_minimum_width(forward: float, left: float) 
 @given(st.floats(-0.5, 0.5))
 def test_in_a_turn_the_heading_changes_at_the_turn_rate_of_the_path(turn: float) -> None:
     assert desired_gait(state_at(turn=turn), Command(0.5), PARAMETERS).turn == pytest.approx(turn * TIMING.step)
+
+
+def state_on_path(command: Command, time: float, heading: float, **changes: Any) -> PlannerState:
+    """A step along a path that a command has described for some time; its stance foot is on the path's end."""
+    path = PathFollowing().begin(0.0, heading)
+    for _ in range(round(time / 0.01)):
+        path = path.advanced(command, 0.01)
+    feet = {"left": Foothold(path.end.position, 0.0), "heading": path.end.heading}
+    return state_at(heading=heading)._replace(path=path, **feet, **changes)
+
+
+@given(st.floats(0.2, 1.5), st.floats(-0.4, 0.4), st.floats(-3.0, 3.0))
+def test_on_a_circle_the_steps_turn_at_its_turn_rate(forward: float, turn: float, heading: float) -> None:
+    command = Command(forward, 0.0, turn)
+    state = turned(state_on_path(command, 3.0, heading, turn=turn), command)
+    assert state.turn == pytest.approx(turn, rel=0.01, abs=1e-9)
+    assert state.next_turn == turn
+
+
+@given(st.floats(0.2, 1.5), sideways, st.floats(-3.0, 3.0))
+def test_on_a_straight_path_the_steps_do_not_turn_at_all(forward: float, left: float, heading: float) -> None:
+    command = Command(forward, left)
+    state = turned(state_on_path(command, 3.0, heading), command)
+    assert (state.turn, state.next_turn) == (0.0, 0.0)
+
+
+def test_a_turn_that_begins_within_a_step_turns_this_step_and_the_next_ones() -> None:
+    state = turned(state_on_path(Command(1.0), 3.0, 0.0), Command(1.0, 0.0, 0.3))
+    first, *following = desired_gaits(state, Command(1.0, 0.0, 0.3), PARAMETERS)
+    assert 0.0 < first.turn < 0.3 * TIMING.step + 1e-9
+    assert [gait.turn for gait in following] == pytest.approx([0.3 * TIMING.step] * len(following))
+
+
+def test_on_the_spot_the_turn_changes_at_touchdown_only() -> None:
+    state = state_on_path(Command(0.0, 0.0, 0.2), 3.0, 0.0, turn=0.2)
+    assert turned(state, Command(0.0, 0.0, 0.4)) is state
 
 
 def test_the_velocity_towards_the_path_adds_to_the_command() -> None:
