@@ -36,6 +36,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("balance_seeds", 40),
         ("balance_paths", 6),
         ("balance_turns", 64),
+        ("balance_commands", 40),
         ("balance_bodies", 8),
         ("balance_pushes", 40),
         ("balance_pushes_60", 10),

@@ -72,8 +72,8 @@ def state_on_path(command: Command, time: float, heading: float, **changes: Any)
     path = PathFollowing().begin(0.0, heading)
     for _ in range(round(time / 0.01)):
         path = path.advanced(command, 0.01)
-    feet = {"left": Foothold(path.end.position, 0.0), "heading": path.end.heading}
-    return state_at(heading=heading)._replace(path=path, **feet, **changes)
+    state = state_at(heading=heading, path=path, **changes)
+    return state._replace(left=Foothold(path.end.position, 0.0), heading=path.end.heading)
 
 
 @given(st.floats(0.2, 1.5), st.floats(-0.4, 0.4), st.floats(-3.0, 3.0))
@@ -182,7 +182,7 @@ later = st.tuples(*(st.floats(0.6, 1.7),) * (STEPS - 1))
 def test_the_steps_that_follow_are_as_long_and_take_their_own_time(
     forward: float, left: float, turn: float, durations: tuple[float, ...]
 ) -> None:
-    state = state_at(preview=Preview(durations=durations), turn=turn, path_correction=0.1 - 0.05j)
+    state = state_at(preview=Preview(durations=durations), turn=turn, next_turn=turn, path_correction=0.1 - 0.05j)
     gait, *following = desired_gaits(state, Command(forward, left), PARAMETERS)
     for after, duration in zip(following, durations, strict=True):
         for side in SIDES:
@@ -200,7 +200,7 @@ def test_before_a_slower_step_the_body_is_less_far_ahead(speed: float, slower: f
 
 
 def test_on_a_plane_the_gaits_that_follow_are_the_same() -> None:
-    gaits = desired_gaits(state_at(turn=0.2, path_correction=0.1j), Command(0.7, 0.1), PARAMETERS)
+    gaits = desired_gaits(state_at(turn=0.2, next_turn=0.2, path_correction=0.1j), Command(0.7, 0.1), PARAMETERS)
     assert len(gaits) == STEPS
     assert set(gaits) == {gaits[0]}
 
