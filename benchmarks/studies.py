@@ -162,6 +162,16 @@ def balance_turns() -> str:
     return study_section("balance_turns", lambda rows: table(headings, lines(rows)))
 
 
+def balance_commands() -> str:
+    def section(rows: list[Row]) -> str:
+        survived, interval = _survival(rows)
+        off = [100.0 * row["path_deviation_m"] for row in rows if row["survived"]]
+        median, most = np.median(off), max(off)
+        return f"{survived} survived ({interval}). Off the path: {median:.0f} cm (median), at most {most:.0f} cm."
+
+    return study_section("balance_commands", section)
+
+
 def balance_pushes() -> str:
     return study_section("balance_pushes", _pushes_by_time)
 
@@ -423,6 +433,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_fast_pushes,
         balance_paths,
         balance_turns,
+        balance_commands,
         balance_bodies,
         balance_pushes,
         balance_pushes_60,
