@@ -55,6 +55,25 @@ def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Arra
     yield leg.hindfoot, HEEL * foot, BALL * foot, FOOT_RADIUS * foot[1]
 
 
+def separate_soles(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
+    """Let the shapes under one foot of a finalized plant pass through those under the other one.
+
+    They have the stiffness of a sole on the ground; feet touch each other with their capsules.
+    """
+    soles = [
+        GeometrySet(
+            [
+                geometry
+                for body in leg.foot_bodies
+                for geometry in plant.GetCollisionGeometriesForBody(plant.GetBodyByName(body))
+                if not scene_graph.model_inspector().GetName(geometry).endswith(LEG_SET)
+            ]
+        )
+        for leg in LEGS.values()
+    ]
+    scene_graph.collision_filter_manager().Apply(CollisionFilterDeclaration().ExcludeBetween(*soles))
+
+
 def filter_leg_capsules(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
     """Restrict the capsules of a finalized plant to collisions with those of the other leg."""
     inspector = scene_graph.model_inspector()

@@ -13,7 +13,7 @@ from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_positions
 from humanwalk.choices.world import World
 from humanwalk.contact.ground_properties import set_ground_compliance
-from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
+from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules, separate_soles
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
@@ -60,6 +60,7 @@ def add_world(
         add_leg_capsules(plant, subject.skeleton)
     plant.Finalize()
     exclude_unused_contact_sets(plant, scene_graph, contact.unused_sets)
+    separate_soles(plant, scene_graph)
     if contact.leg_contact:
         filter_leg_capsules(plant, scene_graph)
     if not visuals:

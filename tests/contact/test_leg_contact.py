@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydrake.geometry import Role
 from pydrake.systems.framework import Diagram
 
 from humanwalk.body.limbs import LEGS
@@ -11,6 +12,7 @@ from humanwalk.body.skeleton import Skeleton
 from humanwalk.contact.leg_contact import LEG_SET
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.scenario import load_scenario
+from humanwalk.sides import SIDES
 
 CROSSED = {leg.hip_abduction: -0.2 for leg in LEGS.values()}
 """Adduction of both hips [rad]."""
@@ -68,6 +70,19 @@ def test_a_bent_leg_does_not_touch_itself(diagram: Diagram) -> None:
     assert pairs(diagram, **{LEGS["Right"].knee: 2.2, LEGS["Right"].hip_flexion: 1.2}) == set()
 
 
-def test_without_leg_contact_the_legs_pass_through_each_other() -> None:
-    ghost = walker(**{"contact.point.leg_contact": "false"})
-    assert pairs(ghost, **CROSSED) == set()
+@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+@pytest.mark.parametrize("adduction", np.linspace(0.08, 0.2, 5))
+def test_without_leg_contact_the_legs_pass_through_each_other(contact: str, adduction: float) -> None:
+    ghost = walker(**{f"contact.{contact}.leg_contact": "false"})
+    assert pairs(ghost, **dict.fromkeys(CROSSED, -adduction)) == set()
+
+
+@pytest.mark.parametrize("contact", ["point", "hydroelastic"])
+def test_the_shapes_under_one_foot_do_not_collide_with_those_of_the_other(contact: str) -> None:
+    inspector = walker(contact=contact).GetSubsystemByName("scene_graph").model_inspector()
+    shapes = [
+        shape for shape in inspector.GetAllGeometryIds(Role.kProximity) if LEG_SET not in inspector.GetName(shape)
+    ]
+    right, left = ([s for s in shapes if inspector.GetName(s).split("::")[-1].startswith(side)] for side in SIDES)
+    assert right
+    assert all(inspector.CollisionFiltered(a, b) for a in right for b in left)
