@@ -17,8 +17,11 @@ from humanwalk.walking.command import Command
 SAME_DISTANCE = 1e-9
 """Difference of distances that comes from rounding [m]."""
 
+STORED_TURN = 0.1
+"""Turn between two stored places of a path that turns on the spot, or nearly so [rad] (our choice)."""
+
 STORED_PLACES = 40
-"""Number of stored places: the last two meters of the reference body."""
+"""Number of stored places: the last two meters of the reference body, if it does not turn on the spot."""
 
 
 class Place(NamedTuple):
@@ -42,6 +45,10 @@ class Place(NamedTuple):
         step = command.velocity * dt * cmath.exp(1j * (self.heading + 0.5 * turn))
         distance = self.distance + abs(command.velocity) * dt
         return Place(self.position + step, self.heading + turn, command.turn, distance)
+
+    def is_beyond(self, stored: Place, spacing: float) -> bool:
+        """Whether the path has moved on or turned since a stored place: between stored places it is nearly straight."""
+        return self.distance - stored.distance >= spacing or abs(self.heading - stored.heading) >= STORED_TURN
 
     def interpolated(self, end: Place, fraction: float) -> Place:
         """The place at a fraction of the line to the next place."""
@@ -76,7 +83,7 @@ class CommandedPath:
         """The path `dt` [s] later."""
         end = self.end.advanced(command, dt)
         *stored, last = self.places
-        if not stored or last.distance - stored[-1].distance >= self.spacing:
+        if not stored or last.is_beyond(stored[-1], self.spacing):
             stored = [*stored, last][-STORED_PLACES:]
         return replace(self, places=(*stored, end))
 
@@ -94,9 +101,12 @@ class CommandedPath:
         distance = abs(nearest.position - position)
         for a, b in pairwise(reversed(self.places)):
             place = _nearest_between(b, a, position)
-            if abs(place.position - position) > distance + SAME_DISTANCE:
+            change = abs(place.position - position) - distance
+            if change > SAME_DISTANCE:
                 break
-            nearest, distance = place, abs(place.position - position)
+            # Of the places of a turn on the spot the last one counts.
+            if change < -SAME_DISTANCE:
+                nearest, distance = place, distance + change
         return nearest
 
     def shifted(self, displacement: complex) -> CommandedPath:

@@ -115,8 +115,7 @@ class StepPlanner:
             change = state.world(p.support.center + start) - dcm_reference
             s = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
             dcm_reference, dcm_rate = dcm_reference + s.value * change, s.rate * change
-        zmp = dcm_reference - dcm_rate / self.frequency + (1.0 + p.dcm_gain) * (dcm - dcm_reference)
-        zmp = self._clamp(state, zmp)
+        zmp = self._clamp(state, dcm_reference - dcm_rate / self.frequency + (1.0 + p.dcm_gain) * (dcm - dcm_reference))
         balance = Balance(zmp, zmp, dcm, dcm_reference)
         feet: dict[Side, FootReference] = {
             side: FootReference(FootTask.FLAT, 1.0, state.heading, state.foot(side).R_WS) for side in SIDES
@@ -131,8 +130,7 @@ class StepPlanner:
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
-        # On irregular footholds the command changes at touchdown only.
-        state = state if preview.command else turned(state, command)
+        state = turned(state, command)
         command = (preview.command or command).at_pace(preview.pace)
         gait, *following = desired_gaits(state, command, p)
 

@@ -23,10 +23,11 @@ def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tu
 def turned(state: PlannerState, command: Command) -> PlannerState:
     """The state whose steps turn as the path requires that the command of now describes.
 
-    A turn that begins within a step would else be known at the next touchdown, when the DCM is beside its place.
+    A turn that begins within a step would else be known at the next touchdown, when the DCM is beside its place. On
+    irregular footholds, and on the spot, the turn still changes at touchdown.
     """
     step = state.timing.step
-    if abs(command.velocity) < state.path.min_speed:
+    if state.preview.command or abs(command.velocity) < state.path.min_speed:
         return state
     next_foot = state.world(command.velocity * step * cmath.exp(0.5j * state.turn * step))
     beside = state.path.nearest(next_foot, command)

@@ -56,6 +56,7 @@ PORTS = {
     "com": 6,
     "foot_forces": 16,
     "friction_use": 2,
+    "leg_contact": 1,
 }
 
 

@@ -78,6 +78,16 @@ def test_a_walker_that_reverses_at_its_nominal_place_is_not_corrected(time: floa
     assert correction == pytest.approx(0.0, abs=1e-6)
 
 
+@given(st.floats(0.0, 0.2), st.floats(-0.1, 0.1))
+def test_after_a_turn_on_the_spot_the_path_goes_on_in_the_new_direction(way: float, aside: float) -> None:
+    path = FOLLOWING.begin(0.0, 0.0)
+    for command, duration in ((Command(0.5), 1.01), (Command(0.0, 0.0, 0.4), 7.85), (Command(0.5), way / 0.5)):
+        for _ in range(round(duration / 0.01)):
+            path = path.advanced(command, 0.01)
+    beside = path.end.position + complex(0.01, aside)
+    assert path.nearest(beside, Command(0.5)).heading == pytest.approx(path.end.heading, abs=0.11)
+
+
 def test_on_the_spot_the_walker_turns_with_the_command() -> None:
     path = PathFollowing().begin(1.0, 0.7)
     assert path.nearest(0.5j, Command(0.0, 0.0, 0.5)) == path.end
