@@ -56,9 +56,9 @@ def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Arra
 
 
 def separate_soles(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
-    """Let the shapes under one foot of a finalized plant pass through those under the other one.
+    """Exclude collisions between the soles of both feet of a finalized plant.
 
-    They have the stiffness of a sole on the ground; feet touch each other with their capsules.
+    The shapes under a sole have its stiffness on the ground; feet touch each other with their capsules.
     """
     soles = [
         GeometrySet(

@@ -10,7 +10,7 @@ from humanwalk.systems.signal import Signal
 
 
 class LegContactObserver(LeafSystem):
-    """Sums the plant's point contacts between the bodies of both legs.
+    """Sums the contacts between the capsules of both legs (`contact/leg_contact.py`), which are point contacts.
 
     Inputs:
         contact_results: the plant's ContactResults.
@@ -25,7 +25,7 @@ class LegContactObserver(LeafSystem):
         self._leg = {
             plant.GetBodyByName(body).index(): sign
             for sign, leg in zip((1.0, -1.0), LEGS.values(), strict=True)
-            for body in (leg.thigh, leg.shank, *leg.foot_bodies)
+            for body in (leg.thigh, leg.shank, leg.hindfoot)
         }
         contacts = self.DeclareAbstractInputPort("contact_results", Value(ContactResults()))
         force = self.DeclareVectorOutputPort("leg_contact", 1, self._calc_force, {contacts.ticket()})

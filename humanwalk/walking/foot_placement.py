@@ -97,7 +97,7 @@ class StepPlacement:
         return OUTWARD[stance] * foot.imag < self.min_own_side_offset
 
     def passing_waypoint(
-        self, start: complex, way: Sequence[complex], stance: Side, toe_in: float = 0.0
+        self, start: complex, way: Sequence[complex], stance: Side, toe_in: float
     ) -> tuple[complex, float] | None:
         """Waypoint for a swinging foot whose way, or the straight way, would hit the stance foot.
 

@@ -17,10 +17,10 @@ from humanwalk.walking.preview import FootholdPlanner
 from humanwalk.walking.swing_clearance import OrdinarySwing, clearance
 
 TURNED = 0.5
-"""Share of its angle to the stance foot at lift-off that a foot still has when its toes reach the heel of that foot."""
+"""Remaining share of the yaw at lift-off, relative to the stance foot, when the toes reach its heel (our choice)."""
 
 PARTS = 16
-"""Parts of the way to the foothold between whose ends the swinging foot is compared with the stance foot."""
+"""Number of parts of the way to the foothold; the clearance of the stance foot is checked at their ends."""
 
 
 class SwingGoal(NamedTuple):

@@ -21,10 +21,10 @@ def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tu
 
 
 def turned(state: PlannerState, command: Command) -> PlannerState:
-    """The state whose steps turn as the path requires that the command of now describes.
+    """The state with the turn of this step and of the next ones, from the path beside the next foothold.
 
-    A turn that begins within a step would else be known at the next touchdown, when the DCM is beside its place. On
-    irregular footholds, and on the spot, the turn still changes at touchdown.
+    Beyond its end the path continues along the current command. On irregular footholds, and in turns on the spot, the
+    turn changes at touchdown only. See docs/decisions/0052-turns-within-a-step.md.
     """
     step = state.timing.step
     if state.preview.command or abs(command.velocity) < state.path.min_speed:
