@@ -33,6 +33,7 @@ from humanwalk.files import (
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.study import journal
 from humanwalk.study.design import MAX_CSV_BYTES, Rows
+from humanwalk.study.factors import Variants
 from humanwalk.study.row import Row, run_columns
 from humanwalk.study.study import Study, dump_study, load_study
 
@@ -57,11 +58,12 @@ def table_columns(study: Study) -> dict[str, type]:
     """Columns of a study's table with their types: index, factors, measures, origin.
 
     Raises:
-        ParameterError: a factor has the name of another column. Only `seed`, a measure as well, may.
+        ParameterError: a factor has the name of another column. Only the field `seed`, a measure as well, may.
     """
     measures = dict(run_columns())
     for name in study.columns:
-        if name == ROW or (name in measures and name != "seed"):
+        is_seed = name == "seed" and not isinstance(study.factors.get(name), Variants)
+        if name == ROW or (name in measures and not is_seed):
             raise ParameterError(
                 f"factors.{name}: the table has another column of that name; allowed: fields of the scenario, other "
                 "names for variants; rename it"

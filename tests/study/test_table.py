@@ -181,7 +181,7 @@ def test_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
         read_table(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["end", "row", "cost_of_transport"])
+@pytest.mark.parametrize("name", ["end", "row", "cost_of_transport", "seed"])
 def test_factor_with_the_name_of_another_column_is_refused(name: str) -> None:
     study = parse_study(f"factors: {{{name}: {{variants: {{a: {{}}}}}}}}")
     with pytest.raises(ParameterError, match="another column of that name"):
