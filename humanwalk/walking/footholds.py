@@ -36,7 +36,8 @@ class FootholdSearch:
     """Which faces of the ground are footholds."""
 
     edge_margin: float = quantity(0.02, "m", 0.0, 0.1)
-    """Distance of the sole from the edges of its face, where the face is long enough."""
+    """Distance of the sole from the edges of its face, where the face is long enough. With 1 cm more turns
+    over low boxes were completed, but fewer walks over high ones (docs/decisions/0053-turns-on-boxes.md)."""
 
     heel_room: float = quantity(0.01, "m", 0.0, 0.1)
     """Distance of the heel from the edge behind it on a face of about the length of the sole. A heel that is nearer

@@ -218,7 +218,7 @@ class PhaseTransitions:
         preview = preview._replace(
             durations=tuple(other / factor for other in others),
             raised=(behind, stance),
-            command=command if is_paused or any(preview.moves) else None,
+            command=command if is_paused or not preview.is_regular else None,
         )
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
@@ -226,14 +226,11 @@ class PhaseTransitions:
         gained = (factor - 1.0) * gait.displacement.on(state.stance).real
         preview = preview._replace(ahead=max(preview.ahead - gained, 0.0))
         pace = preview.pace / factor
-        slower = state._replace(
+        return state._replace(
             timing=state.timing.stretched(factor),
             path_correction=complex(pace * state.path_correction.real, state.path_correction.imag),
             preview=preview._replace(pace=pace),
         )
-        other = desired_gait(slower, command.at_pace(pace), self._parameters)
-        moved = slower.preview.relative_to(gait, other, state.stance, state.direction)
-        return slower._replace(preview=moved)
 
     def _cautious(self, state: PlannerState, command: Command, preview: Preview) -> PlannerState:
         """The state with the caution that the next footholds require, if that is more, and with its timing."""
@@ -274,4 +271,5 @@ class PhaseTransitions:
         if foot.force >= self._parameters.timing.loaded_force or not is_landing:
             return state
         foothold = Foothold.on(state.ground, foot.position)
+        state = state._replace(preview=state.preview.shifted(foothold.position - state.stance_foot.position))
         return state._replace(right=foothold) if state.stance == "Right" else state._replace(left=foothold)

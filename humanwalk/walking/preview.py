@@ -81,7 +81,7 @@ class Preview(NamedTuple):
 
     Attributes:
         footholds: The next foothold, and those after it; none in standing.
-        moves: Displacements from each foothold to the next, beyond those of the gait [m]; 0 on a plane.
+        is_regular: Whether they are those of the gait, as on a plane.
         pace: Speed over the footholds, relative to that of the gait; 1 on a plane.
         ahead: Distance by which the step after the next foothold is shorter, because that is ahead of its place [m].
         durations: Those of the steps after this one, relative to this one; 1 on a plane.
@@ -92,26 +92,41 @@ class Preview(NamedTuple):
     """
 
     footholds: tuple[Foothold, ...] = ()
-    moves: tuple[complex, ...] = ()
+    is_regular: bool = True
     pace: float = 1.0
     ahead: float = 0.0
     durations: tuple[float, ...] = (1.0,) * (STEPS - 1)
     raised: tuple[float, float] = (0.0, 0.0)
     command: Command | None = None
 
-    @property
-    def first_move(self) -> complex:
-        """Displacement of the next foothold from that of the gait [m]."""
-        return self.moves[0] if self.moves else 0.0
+    def moves(
+        self, gaits: Sequence[PeriodicGait], stance: complex, side: Side, direction: complex
+    ) -> tuple[complex, ...]:
+        """Displacements from each foothold to the next, beyond those of the gaits of the steps [m]; 0 on a plane.
 
-    def relative_to(self, gait: PeriodicGait, other: PeriodicGait, stance: Side, direction: complex) -> Preview:
-        """The preview of one gait with moves relative to another one."""
+        Args:
+            gaits: Of this step and of the next ones.
+            stance: The stance foot [m].
+            side: Its side.
+            direction: Its heading, as a unit vector.
+        """
+        if self.command is None:
+            return (0.0,) * len(self.footholds)
         moves = []
-        for move in self.moves:
-            change = gait.displacement.on(stance) - other.displacement.on(stance)
-            moves.append(move + change * direction)
-            direction, stance = direction * cmath.exp(1j * gait.turn), other_side(stance)
-        return self._replace(moves=tuple(moves))
+        for foothold, gait in zip(self.footholds, gaits, strict=True):
+            moves.append(foothold.position - stance - gait.displacement.on(side) * direction)
+            direction, stance, side = direction * cmath.exp(1j * gait.turn), foothold.position, other_side(side)
+        return tuple(moves)
+
+    def shifted(self, displacement: complex) -> Preview:
+        """The preview with displaced footholds [m], if they are irregular ones.
+
+        The DCM keeps its place relative to a stance foot that has not touched the ground yet.
+        """
+        if self.command is None:
+            return self
+        moved = (foothold._replace(position=foothold.position + displacement) for foothold in self.footholds)
+        return self._replace(footholds=tuple(moved))
 
 
 def dcm_shift(increments: Sequence[complex], following: Sequence[PeriodicGait], frequency: float) -> complex:
@@ -209,7 +224,7 @@ class FootholdPlanner:
             ahead: Distance of the stance foot ahead of its place in the gait [m].
             current: Face of the next foothold in the plan before; it is preferred, because the DCM goes there.
         """
-        footholds, moves = [], []
+        footholds, is_regular = [], True
         length = desired_length = first_ahead = 0.0
         for face in (current, *(None,) * (STEPS - 1)):
             direction = cmath.exp(1j * heading)
@@ -219,15 +234,15 @@ class FootholdPlanner:
             desired = stance.position + shortened * direction
             heading += gait.turn
             foothold = self.nearest(ground, desired, heading, stance, side, direction, face)
-            moves.append((foothold.position - desired) + (shortened - step) * direction)
+            is_regular &= foothold.position == desired and shortened == step
             footholds.append(foothold)
             length += ((foothold.position - desired) / direction + shortened).real
             desired_length += step.real
             lead = ((foothold.position - desired) / direction).real
             ahead = max(lead - self.pacing.free_lead * abs(step.real), 0.0)
-            first_ahead = ahead if len(moves) == 1 else first_ahead
+            first_ahead = ahead if len(footholds) == 1 else first_ahead
             stance, side = foothold, other_side(side)
         pace = 1.0
         if desired_length > STEPS * self.pacing.min_length:
             pace = clip(length / desired_length, *PACE_RANGE)
-        return Preview(tuple(footholds), tuple(moves), pace, first_ahead)
+        return Preview(tuple(footholds), is_regular, pace, first_ahead)

@@ -31,7 +31,14 @@ from humanwalk.walking.support import SupportMotion, support_motion
 from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
-from humanwalk.walking.zmp_reference import descent_shares, desired_gaits, pivot_lead, remaining_pivot, turned
+from humanwalk.walking.zmp_reference import (
+    descent_shares,
+    desired_gaits,
+    foothold_moves,
+    pivot_lead,
+    remaining_pivot,
+    turned,
+)
 
 
 class Balance(NamedTuple):
@@ -108,9 +115,9 @@ class StepPlanner:
         p, timing = self.parameters, state.timing
         dcm_reference, dcm_rate = p.support.center_of(state.midpoint, state.heading), 0j
         if state.phase is Phase.WEIGHT_SHIFT:
-            gait, *following = desired_gaits(state, command.at_pace(state.preview.pace), p)
+            gait, *following = gaits = desired_gaits(state, command.at_pace(state.preview.pace), p)
             end = gait.end_offset(state.stance, self.frequency, *following)
-            end += dcm_shift(state.preview.moves, following, self.frequency) / state.direction
+            end += dcm_shift(foothold_moves(state, gaits), following, self.frequency) / state.direction
             start = backward(gait.along_foot, end, self.frequency)
             change = state.world(p.support.center + start) - dcm_reference
             s = blend(0.0, 1.0, state.elapsed, timing.weight_shift)
@@ -130,13 +137,13 @@ class StepPlanner:
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
-        state = turned(state, command)
-        command = (preview.command or command).at_pace(preview.pace)
-        gait, *following = desired_gaits(state, command, p)
+        state, command = turned(state, command), (preview.command or command).at_pace(preview.pace)
+        gait, *following = gaits = desired_gaits(state, command, p)
+        moves = foothold_moves(state, gaits)
 
         # Nominal DCM: backward from its value at the end of the step, that of the gait on the next footholds.
         end = state.world(p.support.center + gait.end_offset(state.stance, self.frequency, *following))
-        end += dcm_shift(preview.moves, following, self.frequency)
+        end += dcm_shift(moves, following, self.frequency)
         segments = remaining_pivot(state, gait, p)
         held = self._passive_pressure(state, body)
         if held is not None:
@@ -155,7 +162,7 @@ class StepPlanner:
         # Foothold: correction of the error that remains at touchdown.
         error = (forward(segments, dcm, self.frequency) - end) / state.direction
         sensitivity = foothold_gain(self.frequency, following[0].double_support)
-        desired = gait.displacement.on(state.stance) + preview.first_move / state.direction + sensitivity * error
+        desired = gait.displacement.on(state.stance) + moves[0] / state.direction + sensitivity * error
 
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))

@@ -1,6 +1,7 @@
 """The desired periodic gait, and the nominal centroidal moment pivot from now to the end of the step."""
 
 import cmath
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -23,13 +24,14 @@ def descent_shares(state: PlannerState, parameters: StepPlannerParameters) -> tu
 def turned(state: PlannerState, command: Command) -> PlannerState:
     """The state with the turn of this step and of the next ones, from the path beside the next foothold.
 
-    Beyond its end the path continues along the current command. On irregular footholds, and in turns on the spot, the
-    turn changes at touchdown only. See docs/decisions/0052-turns-within-a-step.md.
+    Beyond its end the path continues along the current command. In turns on the spot the turn changes at touchdown
+    only. See docs/decisions/0052-turns-within-a-step.md.
     """
-    step = state.timing.step
-    if state.preview.command or abs(command.velocity) < state.path.min_speed:
+    if abs(command.velocity) < state.path.min_speed:
         return state
-    next_foot = state.world(command.velocity * step * cmath.exp(0.5j * state.turn * step))
+    step, preview = state.timing.step, state.preview
+    velocity = (preview.command or command).at_pace(preview.pace).velocity
+    next_foot = state.world(velocity * step * cmath.exp(0.5j * state.turn * step))
     beside = state.path.nearest(next_foot, command)
     return state._replace(turn=wrapped(beside.heading - state.heading) / step, next_turn=beside.turn)
 
@@ -85,6 +87,11 @@ def desired_gaits(state: PlannerState, command: Command, parameters: StepPlanner
         gaits.append(desired_gait(timed, speed, parameters, descent))
         turn = state.next_turn
     return tuple(gaits)
+
+
+def foothold_moves(state: PlannerState, gaits: Sequence[PeriodicGait]) -> tuple[complex, ...]:
+    """Displacements of the planned footholds beyond those of the gaits of the steps, in W [m]; see `Preview.moves`."""
+    return state.preview.moves(gaits, state.stance_foot.position, state.stance, state.direction)
 
 
 def remaining_pivot(

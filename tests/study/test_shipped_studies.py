@@ -64,6 +64,8 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_pushes", 80),
         ("terrain_bodies", 80),
         ("terrain_mixed", 90),
+        ("terrain_turns", 36),
+        ("terrain_commands", 40),
         ("terrain_stairs_pushes", 64),
     ],
 )

@@ -248,3 +248,12 @@ def test_a_stance_foot_without_load_after_touchdown_stands_where_it_is_measured(
     state = advance(PHASES, in_single_support(1.01), landed_at(0.5 - 0.1j), WALK)._replace(elapsed=0.02)
     later = advance(PHASES, state, landed_at(0.55 - 0.1j, force), WALK)
     assert later.right.position == (0.55 - 0.1j if is_moved else 0.5 - 0.1j)
+
+
+def test_irregular_footholds_move_with_a_stance_foot_without_load() -> None:
+    """Without this, walks up and down stairs with a push of 10 N s backward ended in a fall."""
+    phases = on_course(Curb(height=0.1))
+    state = advance(phases, in_single_support(1.01, phases=phases), landed_at(0.3 - 0.1j), WALK)._replace(elapsed=0.02)
+    later = advance(phases, state, landed_at(0.32 - 0.1j, 30.0), WALK)
+    for before, after in zip(state.preview.footholds, later.preview.footholds, strict=True):
+        assert after == before._replace(position=before.position + 0.02)

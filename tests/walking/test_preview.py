@@ -1,6 +1,6 @@
 """The next footholds: those of the gait on a plane, on faces elsewhere, with a speed and duration that suit them."""
 
-import math
+import cmath
 from dataclasses import replace
 from itertools import chain, pairwise, repeat
 
@@ -13,6 +13,7 @@ from humanwalk.terrain import Course, Ground, Plane
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.slope import Flat
 from humanwalk.terrain.steps import Stairs
+from humanwalk.walking.command import Command
 from humanwalk.walking.foot_placement import StepPlacement
 from humanwalk.walking.footholds import Foothold, FootholdSearch
 from humanwalk.walking.lipm import PeriodicGait, PerStance, ZmpSegment, backward
@@ -36,7 +37,8 @@ def preview_on(ground: Ground, length: float, position: complex = 0.08j, turn: f
 @given(st.floats(-0.3, 0.7), st.floats(-0.2, 0.2), st.floats(-0.1, 0.1))
 def test_on_a_plane_the_footholds_are_those_of_the_gait(length: float, turn: float, slope: float) -> None:
     preview = preview_on(Plane(slope=slope), length, turn=turn)
-    assert preview.moves == (0.0,) * STEPS
+    assert preview.is_regular
+    assert preview.moves([gait(length, turn)] * STEPS, 0.08j, "Left", 1.0) == (0.0,) * STEPS
     assert preview.pace == 1.0
     assert preview.footholds[0].position == pytest.approx(0.08j + length - 0.16j)
 
@@ -103,15 +105,18 @@ def test_the_shift_of_the_dcm_is_that_of_the_displaced_zero_moment_points(
     assert shift == pytest.approx(dcm_shift(increments, following, FREQUENCY), abs=1e-9)
 
 
-def test_moves_relative_to_a_slower_gait_lead_to_the_same_footholds() -> None:
-    fast, slow = gait(0.45, turn=0.1), gait(0.3, turn=0.1)
-    preview = preview_on(Plane(), 0.45, turn=0.1).relative_to(fast, slow, "Left", 1.0)
-    place = 0.08j
-    direction, side = 1.0 + 0j, "Left"
-    for move, foothold in zip(preview.moves, preview.footholds, strict=True):
-        place += slow.displacement.on(side) * direction + move  # type: ignore[arg-type]
+@given(st.lists(st.tuples(st.floats(0.1, 0.6), st.floats(-0.3, 0.3)), min_size=STEPS, max_size=STEPS))
+def test_moves_lead_from_the_footholds_of_any_gaits_to_the_planned_ones(steps: list[tuple[float, float]]) -> None:
+    """The turn and the pace of the steps may change after the footholds were planned."""
+    preview = preview_on(STAIRS, 0.45, 1.0 + 0.29 * 3 + 0.06 + 0.08j)._replace(command=Command(0.6))
+    assert not preview.is_regular
+    start = 1.0 + 0.29 * 3 + 0.06 + 0.08j
+    gaits = [gait(length, turn) for length, turn in steps]
+    place, direction, side = start, 1.0 + 0j, "Left"
+    for move, foothold, step in zip(preview.moves(gaits, start, "Left", 1.0), preview.footholds, gaits, strict=True):
+        place += step.displacement.on(side) * direction + move  # type: ignore[arg-type]
         assert place == pytest.approx(foothold.position)
-        direction, side = direction * complex(math.cos(0.1), math.sin(0.1)), "Right" if side == "Left" else "Left"
+        direction, side = direction * cmath.exp(1j * step.turn), "Right" if side == "Left" else "Left"
 
 
 @given(st.floats(-0.4, 0.4))

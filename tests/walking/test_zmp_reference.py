@@ -98,6 +98,16 @@ def test_a_turn_that_begins_within_a_step_turns_this_step_and_the_next_ones() ->
     assert [gait.turn for gait in following] == pytest.approx([0.3 * TIMING.step] * len(following))
 
 
+@pytest.mark.parametrize("pace", [0.6, 1.0, 1.2])
+def test_on_irregular_footholds_the_steps_turn_with_the_path_at_the_planned_pace(pace: float) -> None:
+    command = Command(0.8, 0.0, 0.3)
+    on_boxes = state_on_path(command, 3.0, 0.0)._replace(preview=Preview(command=Command(0.8), pace=pace))
+    on_a_plane = state_on_path(command, 3.0, 0.0)
+    irregular, slower = turned(on_boxes, command), turned(on_a_plane, Command(pace * 0.8, 0.0, pace * 0.3))
+    assert irregular.turn == pytest.approx(slower.turn, abs=1e-6)
+    assert irregular.next_turn == 0.3
+
+
 def test_on_the_spot_the_turn_changes_at_touchdown_only() -> None:
     state = state_on_path(Command(0.0, 0.0, 0.2), 3.0, 0.0, turn=0.2)
     assert turned(state, Command(0.0, 0.0, 0.4)) is state
