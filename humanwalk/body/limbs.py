@@ -55,6 +55,11 @@ class Leg:
         return (*self.hip, self.knee, *self.ankle_joints)
 
     @property
+    def touching_bodies(self) -> tuple[str, str, str]:
+        """The bodies with a capsule that touches the other leg (`contact.leg_contact`)."""
+        return self.thigh, self.shank, self.hindfoot
+
+    @property
     def hip(self) -> tuple[str, str, str]:
         """The three joints of the hip."""
         return (self.hip_flexion, self.hip_abduction, self.hip_rotation)

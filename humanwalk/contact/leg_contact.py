@@ -49,7 +49,7 @@ def add_leg_capsules(plant: MultibodyPlant, skeleton: Skeleton) -> None:
 def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Array, float]]:
     """Body, ends including the caps in the body frame [m], shape (3,) each, and radius [m] of a leg's capsules."""
     leg, origins = LEGS[side], skeleton.origins
-    thigh, shank, foot = (np.array(skeleton.size(body)) for body in (leg.thigh, leg.shank, leg.hindfoot))
+    thigh, shank, foot = (np.array(skeleton.size(body)) for body in leg.touching_bodies)
     yield leg.thigh, np.zeros(3), origins[leg.shank] - origins[leg.thigh], THIGH_RADIUS * thigh[0]
     yield leg.shank, np.zeros(3), origins[leg.hindfoot] - origins[leg.shank], SHANK_RADIUS * shank[0]
     yield leg.hindfoot, HEEL * foot, BALL * foot, FOOT_RADIUS * foot[1]
@@ -80,7 +80,7 @@ def filter_leg_capsules(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
     capsules = {side: GeometrySet() for side in SIDES}
     others = set(inspector.GetAllGeometryIds(Role.kProximity))
     for side, leg in LEGS.items():
-        for body in (leg.thigh, leg.shank, leg.hindfoot):
+        for body in leg.touching_bodies:
             for geometry in plant.GetCollisionGeometriesForBody(plant.GetBodyByName(body)):
                 if inspector.GetName(geometry).endswith(LEG_SET):
                     capsules[side].Add(geometry)

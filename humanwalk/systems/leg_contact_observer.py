@@ -25,7 +25,7 @@ class LegContactObserver(LeafSystem):
         self._leg = {
             plant.GetBodyByName(body).index(): sign
             for sign, leg in zip((1.0, -1.0), LEGS.values(), strict=True)
-            for body in (leg.thigh, leg.shank, leg.hindfoot)
+            for body in leg.touching_bodies
         }
         contacts = self.DeclareAbstractInputPort("contact_results", Value(ContactResults()))
         force = self.DeclareVectorOutputPort("leg_contact", 1, self._calc_force, {contacts.ticket()})
