@@ -56,7 +56,7 @@ class Leg:
 
     @property
     def touching_bodies(self) -> tuple[str, str, str]:
-        """The bodies with a capsule that touches the other leg (`contact.leg_contact`)."""
+        """The bodies whose capsules can touch the other leg (`contact.leg_contact`)."""
         return self.thigh, self.shank, self.hindfoot
 
     @property

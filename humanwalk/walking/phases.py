@@ -101,7 +101,7 @@ class PhaseTransitions:
         """The old foot begins to swing, with its measured position and velocity."""
         swing = self._parameters.swing
         swing = replace(swing, lift=self._parameters.caution.lift_above(swing.lift, state.caution))
-        command = (state.preview.command or command).at_pace(state.preview.pace)
+        command = state.preview.paced(command)
         foot, goal = body.foot(state.swing_side), state.preview.footholds[0]
         flat_height = state.old_foot.ground + self._ankle_height / state.old_foot.R_WS[2, 2]
         toe_up = swing.touchdown_pitch(command.forward) * swing.rolling_share(state.stance_foot.step_to(goal))
@@ -169,7 +169,7 @@ class PhaseTransitions:
         """Whether the DCM is behind the foot that lands on an irregular foothold, after a large error."""
         ahead = ((dcm - body.foot(state.swing_side).position) / state.direction).real
         is_large = state.largest_error >= self._parameters.caution.pause_error
-        return state.preview.command is not None and is_large and ahead < self._parameters.support.center
+        return state.preview.holds_command and is_large and ahead < self._parameters.support.center
 
     def _catch(self, state: PlannerState, command: Command, dcm: complex) -> PlannerState:
         """Begin a careful step from standing, on the foot with the smaller lateral distance to the DCM."""

@@ -99,6 +99,15 @@ class Preview(NamedTuple):
     raised: tuple[float, float] = (0.0, 0.0)
     command: Command | None = None
 
+    @property
+    def holds_command(self) -> bool:
+        """Whether one command holds until touchdown: that for which the footholds were planned."""
+        return self.command is not None
+
+    def paced(self, command: Command) -> Command:
+        """The command of the step at the pace of the footholds: the held command, or else the current one."""
+        return (self.command or command).at_pace(self.pace)
+
     def moves(
         self, gaits: Sequence[PeriodicGait], stance: complex, side: Side, direction: complex
     ) -> tuple[complex, ...]:
@@ -110,7 +119,7 @@ class Preview(NamedTuple):
             side: Its side.
             direction: Its heading, as a unit vector.
         """
-        if self.command is None:
+        if not self.holds_command:
             return (0.0,) * len(self.footholds)
         moves = []
         for foothold, gait in zip(self.footholds, gaits, strict=True):
@@ -119,11 +128,11 @@ class Preview(NamedTuple):
         return tuple(moves)
 
     def shifted(self, displacement: complex) -> Preview:
-        """The preview with displaced footholds [m], if they are irregular ones.
+        """The preview with displaced footholds [m]; without a held command they follow from the gait.
 
         The DCM keeps its place relative to a stance foot that has not touched the ground yet.
         """
-        if self.command is None:
+        if not self.holds_command:
             return self
         moved = (foothold._replace(position=foothold.position + displacement) for foothold in self.footholds)
         return self._replace(footholds=tuple(moved))

@@ -115,7 +115,7 @@ class StepPlanner:
         p, timing = self.parameters, state.timing
         dcm_reference, dcm_rate = p.support.center_of(state.midpoint, state.heading), 0j
         if state.phase is Phase.WEIGHT_SHIFT:
-            gait, *following = gaits = desired_gaits(state, command.at_pace(state.preview.pace), p)
+            gait, *following = gaits = desired_gaits(state, state.preview.paced(command), p)
             end = gait.end_offset(state.stance, self.frequency, *following)
             end += dcm_shift(foothold_moves(state, gaits), following, self.frequency) / state.direction
             start = backward(gait.along_foot, end, self.frequency)
@@ -137,7 +137,7 @@ class StepPlanner:
     ) -> tuple[PlannerState, WalkingReference]:
         """Balance and step in double or single support."""
         p, timing, placement, preview = self.parameters, state.timing, self.parameters.placement, state.preview
-        state, command = turned(state, command), (preview.command or command).at_pace(preview.pace)
+        state, command = turned(state, command), preview.paced(command)
         gait, *following = gaits = desired_gaits(state, command, p)
         moves = foothold_moves(state, gaits)
 

@@ -30,8 +30,7 @@ def turned(state: PlannerState, command: Command) -> PlannerState:
     if abs(command.velocity) < state.path.min_speed:
         return state
     step, preview = state.timing.step, state.preview
-    velocity = (preview.command or command).at_pace(preview.pace).velocity
-    next_foot = state.world(velocity * step * cmath.exp(0.5j * state.turn * step))
+    next_foot = state.world(preview.paced(command).velocity * step * cmath.exp(0.5j * state.turn * step))
     beside = state.path.nearest(next_foot, command)
     return state._replace(turn=wrapped(beside.heading - state.heading) / step, next_turn=beside.turn)
 

@@ -11,19 +11,8 @@ from humanwalk.systems.push_source import PushSource
 
 PORTS = {
     *("state", "net_actuation", "contact_results", "query_object", "torque", "saturated", "desired_state", "phase"),
-    *(
-        "contact_schedule",
-        "soles",
-        "com",
-        "foot_forces",
-        "friction_use",
-        "leg_contact",
-        "command",
-        "balance",
-        "qp_status",
-        "push",
-    ),
-    "felt_load",
+    *("contact_schedule", "soles", "com", "foot_forces", "friction_use", "command", "balance", "qp_status", "push"),
+    *("felt_load", "leg_contact"),
 }
 
 
