@@ -1,37 +1,35 @@
-"""Contact geometry of the feet: two alternative sets of collision shapes under each foot, and the points of the soles.
+"""Contact geometry of the feet: six small spheres under each, and the flat sole that the thesis' contact law acts on.
 
-The point set is six small spheres per foot, the hydroelastic set three compliant boxes. Both are in the model file,
-distinguished by `POINT_SET` and `HYDRO_SET` in their names; a diagram filters out the set that it does not use, or both
-if the thesis' contact law acts on the lower faces of the boxes. The lowest points of all shapes are on the sole plane.
+The spheres are in the model file, for Drake's point and hydroelastic contact. Their lowest points and the flat sole are
+on the sole plane.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from humanwalk.body.flesh import Flesh
 from humanwalk.body.shapes import Vector3
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
 from humanwalk.sides import SIDES, Side
 
-POINT_SET = "_point_"
-"""Part of the name of every collision shape of the point-contact set."""
-HYDRO_SET = "_hydro_"
-"""Part of the name of every collision shape of the hydroelastic set."""
+SOLE_SET = "_sole_"
+"""Part of the name of every sphere, and of no other collision shape."""
 
 FRICTION = 0.7
 """Coulomb coefficient of the soles, static and dynamic: that of two soles on each other (thesis 2.5)."""
-HYDRO_RESOLUTION = 0.05
-"""Mesh resolution hint of the soles [m]; Drake ignores it for boxes."""
+
+MESH_EDGE = 0.5
+"""Length of the edges of a sphere's hydroelastic mesh, relative to its radius. With 1 the lowest point would be the
+corner of a polyhedron, and a sphere would sink by up to twice as much; with 0.25 a walk takes 1.4 times as long."""
 
 SOLE_GRID = (2, 2)
-"""Numbers of points along x and y of the lower face of each box, for the asperity law: its corners (our choice). A
-finer grid is softer at its rim, and tilts far before the center of pressure reaches it (docs/contact.md)."""
+"""Numbers of points along x and y of each part of a sole, for the asperity law: its corners (our choice). A finer grid
+is softer at its rim, and tilts far before the center of pressure reaches it (docs/contact.md)."""
 
 SPHERE_RADIUS = 0.012
 """Radius of the contact spheres of the reference human [m]."""
-SOLE_THICKNESS = 0.02
-"""Height of the hydroelastic boxes of the reference human [m]."""
 
 
 @dataclass(frozen=True)
@@ -64,22 +62,12 @@ SOLE_PARTS = (
 
 @dataclass(frozen=True)
 class ContactSphere:
-    """A point-contact sphere: center in the body frame p_BoS_B [m] and radius [m]."""
+    """A sphere under a foot: center in the body frame p_BoS_B [m] and radius [m]."""
 
     name: str
     body: str
     center: Vector3
     radius: float
-
-
-@dataclass(frozen=True)
-class ContactBox:
-    """A compliant box: center in the body frame p_BoS_B [m] and edges along x, y, z [m]."""
-
-    name: str
-    body: str
-    center: Vector3
-    size: Vector3
 
 
 @dataclass(frozen=True)
@@ -120,7 +108,7 @@ def sole_extent(skeleton: Skeleton) -> SoleExtent:
 
 
 def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
-    """Return the point set: medial and lateral spheres below heel, ball and toes of both feet."""
+    """Return the medial and lateral spheres below heel, ball and toes of both feet."""
     spheres = []
     for side in SIDES:
         length, width, height = skeleton.size(f"{side}Leg_Ankle")
@@ -131,48 +119,49 @@ def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
                 y = leftward * outward * part.spheres_half_gap * width
                 body = f"{side}Leg_{part.body}"
                 center = _in_body(skeleton, side, body, (part.spheres_x * length, y, radius))
-                spheres.append(ContactSphere(f"{side}Leg{POINT_SET}{part.name}_{place}", body, center, radius))
+                spheres.append(ContactSphere(f"{side}Leg{SOLE_SET}{part.name}_{place}", body, center, radius))
     return tuple(spheres)
 
 
-def contact_boxes(skeleton: Skeleton) -> tuple[ContactBox, ...]:
-    """Return the hydroelastic set: one box below hindfoot, midfoot and toes of both feet."""
-    boxes = []
-    for side in SIDES:
-        length, width, thickness = skeleton.size(f"{side}Leg_Ankle")
-        height = SOLE_THICKNESS * thickness
-        for part in SOLE_PARTS:
-            back, front = part.x[0] * length, part.x[1] * length
-            body = f"{side}Leg_{part.body}"
-            center = _in_body(skeleton, side, body, ((back + front) / 2, 0.0, height / 2))
-            size = (front - back, part.width * width, height)
-            boxes.append(ContactBox(f"{side}Leg{HYDRO_SET}{part.name}", body, center, size))
-    return tuple(boxes)
+def sole_properties(sphere: ContactSphere, flesh: Flesh) -> dict[str, float | None]:
+    """Return the contact properties of a sphere by their names in Drake's model files; None: a tag without a value."""
+    return {
+        "mu_static": FRICTION,
+        "mu_dynamic": FRICTION,
+        "hunt_crossley_dissipation": flesh.sole_dissipation,
+        "relaxation_time": flesh.sole_relaxation_time,
+        "point_contact_stiffness": flesh.sole_stiffness,
+        "compliant_hydroelastic": None,
+        "hydroelastic_modulus": flesh.sole_modulus,
+        "mesh_resolution_hint": MESH_EDGE * sphere.radius,
+    }
 
 
 def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:
-    """Return the polygonal contact surface of a foot (thesis 2.4.2): the lower faces of its boxes."""
-    return tuple(
-        rectangle_patch(box.body, box.center, box.size, SOLE_GRID)
-        for box in contact_boxes(skeleton)
-        if box.name.startswith(side)
-    )
+    """Return the polygonal contact surface of a foot (thesis 2.4.2): a rectangle for each part of its sole."""
+    length, width, _ = skeleton.size(f"{side}Leg_Ankle")
+    patches = []
+    for part in SOLE_PARTS:
+        back, front = part.x[0] * length, part.x[1] * length
+        body = f"{side}Leg_{part.body}"
+        center = _in_body(skeleton, side, body, ((back + front) / 2, 0.0, 0.0))
+        patches.append(rectangle_patch(body, center, (front - back, part.width * width), SOLE_GRID))
+    return tuple(patches)
 
 
-def rectangle_patch(body: str, center: Vector3, size: Vector3, grid: tuple[int, int]) -> SolePatch:
-    """Return the lower face of a box: a grid of points from rim to rim, each with the area around it.
+def rectangle_patch(body: str, center: Vector3, size: tuple[float, float], grid: tuple[int, int]) -> SolePatch:
+    """Return a rectangle across the body's z: a grid of points from rim to rim, each with the area around it.
 
     Args:
-        body: Body of the box.
-        center: Center of the box in the body frame [m].
-        size: Edges along the body's x, y, z [m].
+        body: Body of the sole.
+        center: Center of the rectangle in the body frame [m].
+        size: Edges along the body's x and y [m].
         grid: Numbers of points along x and y, at least 2.
     """
     (x, along), (y, across) = (
-        _rim_to_rim(middle, edge, n) for middle, edge, n in zip(center[:2], size[:2], grid, strict=True)
+        _rim_to_rim(middle, edge, n) for middle, edge, n in zip(center[:2], size, grid, strict=True)
     )
-    bottom = center[2] - 0.5 * size[2]
-    return SolePatch(body, np.array([(a, b, bottom) for a in x for b in y]), np.outer(along, across).ravel())
+    return SolePatch(body, np.array([(a, b, center[2]) for a in x for b in y]), np.outer(along, across).ravel())
 
 
 def _rim_to_rim(middle: float, edge: float, n: int) -> tuple[Array, Array]:

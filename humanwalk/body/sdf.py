@@ -8,14 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 from humanwalk.body.bones import bones
-from humanwalk.body.contact import (
-    FRICTION,
-    HYDRO_RESOLUTION,
-    ContactBox,
-    ContactSphere,
-    contact_boxes,
-    contact_spheres,
-)
+from humanwalk.body.contact import ContactSphere, contact_spheres, sole_properties
 from humanwalk.body.flesh import Flesh
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.shapes import Vector3
@@ -54,7 +47,7 @@ def to_sdf(skeleton: Skeleton, look: Look = "person") -> str:
     sdf = ET.Element("sdf", {"version": SDF_VERSION, "xmlns:drake": DRAKE_NAMESPACE})
     sdf.append(ET.Comment(HEADER))
     model = ET.SubElement(sdf, "model", {"name": MODEL_NAME})
-    spheres, boxes, looks = contact_spheres(skeleton), contact_boxes(skeleton), LOOKS[look](skeleton)
+    spheres, looks = contact_spheres(skeleton), LOOKS[look](skeleton)
     for segment, inboard in skeleton.tree():
         link = ET.SubElement(model, "link", {"name": segment.name})
         if inboard is None:
@@ -63,8 +56,7 @@ def to_sdf(skeleton: Skeleton, look: Look = "person") -> str:
             _add_pose(link, inboard.origin).set("relative_to", inboard.parent)
         link.append(_inertial(segment))
         link.extend(_visual(look) for look in looks if look.body == segment.name)
-        link.extend(_sphere_collision(s, skeleton.flesh) for s in spheres if s.body == segment.name)
-        link.extend(_box_collision(b, skeleton.flesh) for b in boxes if b.body == segment.name)
+        link.extend(_collision(sphere, skeleton.flesh) for sphere in spheres if sphere.body == segment.name)
         if isinstance(inboard, Joint):
             model.append(_revolute(inboard))
         elif isinstance(inboard, Weld):
@@ -134,32 +126,12 @@ def _visual(look: Visual) -> ET.Element:
     return visual
 
 
-def _sphere_collision(sphere: ContactSphere, flesh: Flesh) -> ET.Element:
-    stiffness = {"drake:point_contact_stiffness": number(flesh.sole_stiffness)}
-    return _collision(sphere, "sphere", {"radius": number(sphere.radius)}, flesh, stiffness)
-
-
-def _box_collision(box: ContactBox, flesh: Flesh) -> ET.Element:
-    compliant = {
-        "drake:compliant_hydroelastic": None,
-        "drake:hydroelastic_modulus": number(flesh.sole_modulus),
-        "drake:mesh_resolution_hint": number(HYDRO_RESOLUTION),
-    }
-    return _collision(box, "box", {"size": numbers(box.size)}, flesh, compliant)
-
-
-def _collision(
-    shape: ContactSphere | ContactBox, primitive: str, size: Texts, flesh: Flesh, properties: Texts
-) -> ET.Element:
-    collision = ET.Element("collision", {"name": shape.name})
-    _add_pose(collision, shape.center)
-    _add(ET.SubElement(ET.SubElement(collision, "geometry"), primitive), size)
-    friction = number(FRICTION)
-    common = {
-        "drake:mu_static": friction,
-        "drake:mu_dynamic": friction,
-        "drake:hunt_crossley_dissipation": number(flesh.sole_dissipation),
-        "drake:relaxation_time": number(flesh.sole_relaxation_time),
-    }
-    _add(ET.SubElement(collision, "drake:proximity_properties"), {**common, **properties})
+def _collision(sphere: ContactSphere, flesh: Flesh) -> ET.Element:
+    collision = ET.Element("collision", {"name": sphere.name})
+    _add_pose(collision, sphere.center)
+    geometry = ET.SubElement(collision, "geometry")
+    _add(ET.SubElement(geometry, "sphere"), {"radius": number(sphere.radius)})
+    values = sole_properties(sphere, flesh).items()
+    texts = {f"drake:{name}": None if value is None else number(value) for name, value in values}
+    _add(ET.SubElement(collision, "drake:proximity_properties"), texts)
     return collision

@@ -5,14 +5,8 @@ readers have to skip them.
 """
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
 
-from humanwalk.body.contact import (
-    FRICTION,
-    HYDRO_RESOLUTION,
-    contact_boxes,
-    contact_spheres,
-)
+from humanwalk.body.contact import ContactSphere, contact_spheres, sole_properties
 from humanwalk.body.flesh import Flesh
 from humanwalk.body.model_text import number, numbers
 from humanwalk.body.sdf import HEADER, LOOKS, MODEL_NAME, Look
@@ -53,26 +47,12 @@ def to_urdf(skeleton: Skeleton, look: Look = "person") -> str:
             )
     robot = ET.Element("robot", {"name": MODEL_NAME, "xmlns:drake": DRAKE_NAMESPACE})
     robot.append(ET.Comment(HEADER))
-    spheres, boxes, looks = contact_spheres(skeleton), contact_boxes(skeleton), LOOKS[look](skeleton)
-    flesh = skeleton.flesh
-    compliant: dict[str, float | None] = {
-        "drake:compliant_hydroelastic": None,
-        "drake:hydroelastic_modulus": flesh.sole_modulus,
-    }
+    spheres, looks = contact_spheres(skeleton), LOOKS[look](skeleton)
     for segment, inboard in skeleton.tree():
         link = ET.SubElement(robot, "link", {"name": segment.name})
         link.append(_inertial(segment))
         link.extend(_visual(visual) for visual in looks if visual.body == segment.name)
-        for sphere in spheres:
-            if sphere.body == segment.name:
-                shape = ET.Element("sphere", {"radius": number(sphere.radius)})
-                stiffness = {"drake:point_contact_stiffness": flesh.sole_stiffness}
-                link.append(_collision(sphere.name, sphere.center, shape, flesh, stiffness))
-        for box in boxes:
-            if box.body == segment.name:
-                shape = ET.Element("box", {"size": numbers(box.size)})
-                resolution = {"drake:mesh_resolution_hint": HYDRO_RESOLUTION}
-                link.append(_collision(box.name, box.center, shape, flesh, {**compliant, **resolution}))
+        link.extend(_collision(sphere, skeleton.flesh) for sphere in spheres if sphere.body == segment.name)
         if isinstance(inboard, Joint):
             robot.append(_revolute(inboard))
             robot.append(_transmission(inboard))
@@ -141,21 +121,13 @@ def _visual(look: Visual) -> ET.Element:
     return visual
 
 
-def _collision(
-    name: str, center: Vector3, shape: ET.Element, flesh: Flesh, properties: Mapping[str, float | None]
-) -> ET.Element:
-    collision = ET.Element("collision", {"name": name})
-    collision.append(_origin(center))
-    ET.SubElement(collision, "geometry").append(shape)
+def _collision(sphere: ContactSphere, flesh: Flesh) -> ET.Element:
+    collision = ET.Element("collision", {"name": sphere.name})
+    collision.append(_origin(sphere.center))
+    ET.SubElement(ET.SubElement(collision, "geometry"), "sphere", {"radius": number(sphere.radius)})
     contact = ET.SubElement(collision, "drake:proximity_properties")
-    common: dict[str, float | None] = {
-        "drake:mu_static": FRICTION,
-        "drake:mu_dynamic": FRICTION,
-        "drake:hunt_crossley_dissipation": flesh.sole_dissipation,
-        "drake:relaxation_time": flesh.sole_relaxation_time,
-    }
-    for tag, value in {**common, **properties}.items():
-        ET.SubElement(contact, tag, {} if value is None else {"value": number(value)})
+    for name, value in sole_properties(sphere, flesh).items():
+        ET.SubElement(contact, f"drake:{name}", {} if value is None else {"value": number(value)})
     return collision
 
 

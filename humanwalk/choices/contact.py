@@ -1,15 +1,13 @@
 """The contact of feet and ground: Drake's point or hydroelastic contact, or the thesis' asperity law."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
-from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, ProximityProperties, SceneGraph
-from pydrake.multibody.plant import ContactModel, MultibodyPlant
-from pydrake.multibody.tree import BodyIndex
+from pydrake.geometry import ProximityProperties
+from pydrake.multibody.plant import ContactModel
 
 from humanwalk.body import SIDES, sole_patches
-from humanwalk.body.contact import HYDRO_SET, POINT_SET
 from humanwalk.choices.world import World
 from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.contact_step import body_jacobians
@@ -35,8 +33,8 @@ class Contact(Protocol):
         """Drake's contact model."""
 
     @property
-    def unused_sets(self) -> tuple[str, ...]:
-        """Sets of collision shapes under the feet that Drake must not collide."""
+    def collides_soles(self) -> bool:
+        """Whether Drake collides the spheres under the soles with the ground."""
 
     def ground_properties(self, friction: float) -> ProximityProperties:
         """Properties of the ground for a Coulomb coefficient between sole and ground."""
@@ -55,6 +53,7 @@ class Contact(Protocol):
 class _DrakeContact:
     leg_contact: bool = True
     """Whether one leg stops the other; else they pass through each other."""
+    collides_soles: ClassVar[bool] = True
 
     def ground_properties(self, friction: float) -> ProximityProperties:
         return ground_properties(friction)
@@ -75,15 +74,13 @@ class PointContact(_DrakeContact):
     """Six spheres under each foot, with Drake's point contact."""
 
     model = ContactModel.kPoint
-    unused_sets = (HYDRO_SET,)
 
 
 @dataclass(frozen=True)
 class HydroelasticContact(_DrakeContact):
-    """Three compliant boxes under each foot, with Drake's hydroelastic contact."""
+    """The same spheres, compliant, with Drake's hydroelastic contact on rigid ground."""
 
     model = ContactModel.kHydroelasticWithFallback
-    unused_sets = (POINT_SET,)
 
     def ground_properties(self, friction: float) -> ProximityProperties:
         return ground_properties(friction, hydroelastic=True)
@@ -91,10 +88,10 @@ class HydroelasticContact(_DrakeContact):
 
 @dataclass(frozen=True)
 class AsperityContactModel(_DrakeContact, AsperityParameters):
-    """The thesis' normal penalty and asperity friction on the soles' lower faces; Drake collides no foot."""
+    """The thesis' normal penalty and asperity friction on flat soles; Drake collides no foot with the ground."""
 
     model = ContactModel.kPoint
-    unused_sets = (HYDRO_SET, POINT_SET)
+    collides_soles = False
 
     def add_to(self, world: World) -> None:
         if world.plant.time_step() == 0:
@@ -157,16 +154,3 @@ def _in_velocities(world: World, gains: Array) -> Array:
     values = np.zeros(world.plant.num_velocities())
     values[world.joints.v] = gains
     return values
-
-
-def exclude_unused_contact_sets(plant: MultibodyPlant, scene_graph: SceneGraph, unused_sets: tuple[str, ...]) -> None:
-    """Filter the foot geometry of some sets out of all collisions of a finalized plant."""
-    inspector = scene_graph.model_inspector()
-    unused, everything = GeometrySet(), GeometrySet()
-    for index in map(BodyIndex, range(plant.num_bodies())):
-        for geometry in plant.GetCollisionGeometriesForBody(plant.get_body(index)):
-            everything.Add(geometry)
-            if any(unused_set in inspector.GetName(geometry) for unused_set in unused_sets):
-                unused.Add(geometry)
-    filters = scene_graph.collision_filter_manager()
-    filters.Apply(CollisionFilterDeclaration().ExcludeWithin(unused).ExcludeBetween(unused, everything))

@@ -55,25 +55,6 @@ def _capsules(skeleton: Skeleton, side: Side) -> Iterator[tuple[str, Array, Arra
     yield leg.hindfoot, HEEL * foot, BALL * foot, FOOT_RADIUS * foot[1]
 
 
-def separate_soles(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
-    """Exclude collisions between the soles of both feet of a finalized plant.
-
-    The shapes under a sole have its stiffness on the ground; feet touch each other with their capsules.
-    """
-    soles = [
-        GeometrySet(
-            [
-                geometry
-                for body in leg.foot_bodies
-                for geometry in plant.GetCollisionGeometriesForBody(plant.GetBodyByName(body))
-                if not scene_graph.model_inspector().GetName(geometry).endswith(LEG_SET)
-            ]
-        )
-        for leg in LEGS.values()
-    ]
-    scene_graph.collision_filter_manager().Apply(CollisionFilterDeclaration().ExcludeBetween(*soles))
-
-
 def filter_leg_capsules(plant: MultibodyPlant, scene_graph: SceneGraph) -> None:
     """Restrict the capsules of a finalized plant to collisions with those of the other leg."""
     inspector = scene_graph.model_inspector()

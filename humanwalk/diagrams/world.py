@@ -8,12 +8,12 @@ from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, DiscreteContact
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from humanwalk.body.plant import add_human, kinematics_plant
-from humanwalk.choices.contact import exclude_unused_contact_sets
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_positions
 from humanwalk.choices.world import World
 from humanwalk.contact.ground_properties import set_ground_compliance
-from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules, separate_soles
+from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
+from humanwalk.contact.sole_filter import filter_soles
 from humanwalk.control.gain_noise import gain_factors
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
@@ -59,8 +59,7 @@ def add_world(
     if contact.leg_contact:
         add_leg_capsules(plant, subject.skeleton)
     plant.Finalize()
-    exclude_unused_contact_sets(plant, scene_graph, contact.unused_sets)
-    separate_soles(plant, scene_graph)
+    filter_soles(plant, scene_graph, contact.collides_soles)
     if contact.leg_contact:
         filter_leg_capsules(plant, scene_graph)
     if not visuals:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from humanwalk.body import Skeleton, human
 from humanwalk.body.build import REGION_BODIES, mass_properties, person, standing_height
-from humanwalk.body.contact import contact_boxes, contact_spheres
+from humanwalk.body.contact import contact_spheres, sole_patches
 from humanwalk.body.de_leva import DE_LEVA, Sex
 from humanwalk.body.growth import ADULT_AGE, MASS_SHARE, growth
 from humanwalk.body.loads import AnkleWeights, Backpack
@@ -122,8 +122,8 @@ def test_soles_stand_on_the_ground(subject: Subject) -> None:
     body = subject.body
     for sphere in contact_spheres(body):
         assert body.origins[sphere.body][2] + sphere.center[2] - sphere.radius == pytest.approx(0.0, abs=1e-9)
-    for box in contact_boxes(body):
-        assert body.origins[box.body][2] + box.center[2] - 0.5 * box.size[2] == pytest.approx(0.0, abs=1e-9)
+    for patch in (patch for side in SIDES for patch in sole_patches(body, side)):
+        np.testing.assert_allclose(body.origins[patch.body][2] + patch.p_BoQ_B[:, 2], 0.0, atol=1e-9)
 
 
 @given(st.sampled_from(SEXES), st.floats(0.5, 2.0), st.floats(0.7, 1.2))

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pydrake.geometry import Box as DrakeBox
 from pydrake.geometry import Role, SceneGraph, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
@@ -15,7 +14,7 @@ from pydrake.multibody.tree import RevoluteJoint
 from pydrake.systems.framework import DiagramBuilder
 
 import humanwalk
-from humanwalk.body import HYDRO_SET, POINT_SET, Skeleton, human, to_sdf
+from humanwalk.body import SIDES, SOLE_SET, Skeleton, human, to_sdf
 from humanwalk.body.subject import Subject
 
 COMMITTED = Path(humanwalk.__file__).parent / "models" / "sdf" / "human.sdf"
@@ -159,14 +158,10 @@ def test_sole_frames_lie_on_the_ground_below_the_ankles(parsed: Parsed, side: st
     np.testing.assert_allclose(X_WF.rotation().matrix(), np.eye(3), atol=1e-12)
 
 
-def test_all_collision_shapes_belong_to_one_of_the_two_sets(parsed: Parsed) -> None:
+def test_the_collision_shapes_are_six_spheres_under_each_foot(parsed: Parsed) -> None:
     every = parsed.shapes(Role.kProximity)
-    spheres = parsed.shapes(Role.kProximity, POINT_SET)
-    boxes = parsed.shapes(Role.kProximity, HYDRO_SET)
-    assert (len(spheres), len(boxes)) == (12, 6)
-    assert {name for name, _, _ in every} == {name for name, _, _ in spheres + boxes}
-    assert all(isinstance(shape, Sphere) for _, shape, _ in spheres)
-    assert all(isinstance(shape, DrakeBox) for _, shape, _ in boxes)
+    assert all(isinstance(shape, Sphere) and SOLE_SET in name for name, shape, _ in every)
+    assert [sum(f"{side}Leg{SOLE_SET}" in name for name, _, _ in every) for side in SIDES] == [6, 6]
 
 
 def test_collision_shapes_rest_on_the_ground(parsed: Parsed) -> None:
@@ -174,20 +169,8 @@ def test_collision_shapes_rest_on_the_ground(parsed: Parsed) -> None:
         assert lowest_point(shape, X_WG) == pytest.approx(0.0, abs=1e-8), name
 
 
-def test_point_set_stands_within_the_hydroelastic_soles(parsed: Parsed) -> None:
-    """Both sets offer the same support: no sphere outside the boxes of its foot."""
-    for side in ("Right", "Left"):
-        spheres = parsed.shapes(Role.kProximity, f"{side}Leg{POINT_SET}")
-        boxes = parsed.shapes(Role.kProximity, f"{side}Leg{HYDRO_SET}")
-        for name, _, X_WG in spheres:
-            p_WG = X_WG.translation()
-            assert any(
-                np.all(np.abs(p_WG - X_WH.translation())[:2] <= np.array(box.size())[:2] / 2) for _, box, X_WH in boxes
-            ), name
-
-
 def test_the_center_of_mass_is_above_the_feet(parsed: Parsed) -> None:
-    centers = np.array([X.translation() for _, _, X in parsed.shapes(Role.kProximity, POINT_SET)])
+    centers = np.array([X.translation() for _, _, X in parsed.shapes(Role.kProximity)])
     x, y, _ = parsed.skeleton.com
     assert centers[:, 0].min() < x < centers[:, 0].max()
     assert centers[:, 1].min() < y < centers[:, 1].max()
@@ -203,12 +186,10 @@ def test_contact_parameters(parsed: Parsed) -> None:
         dissipation = properties.GetProperty("material", "hunt_crossley_dissipation")
         assert dissipation == pytest.approx(flesh.sole_dissipation)
         assert properties.GetProperty("material", "relaxation_time") == pytest.approx(flesh.sole_relaxation_time)
-        if POINT_SET in inspector.GetName(geometry):
-            stiffness = properties.GetProperty("material", "point_contact_stiffness")
-            assert stiffness == pytest.approx(flesh.sole_stiffness)
-        else:
-            modulus = properties.GetProperty("hydroelastic", "hydroelastic_modulus")
-            assert modulus == pytest.approx(flesh.sole_modulus)
+        stiffness = properties.GetProperty("material", "point_contact_stiffness")
+        assert stiffness == pytest.approx(flesh.sole_stiffness)
+        modulus = properties.GetProperty("hydroelastic", "hydroelastic_modulus")
+        assert modulus == pytest.approx(flesh.sole_modulus)
 
 
 def test_soles_sink_by_the_same_share_of_their_length(parsed: Parsed) -> None:

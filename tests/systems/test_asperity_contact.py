@@ -48,7 +48,7 @@ class Block:
         self.contact = builder.AddSystem(
             AsperityContact(
                 self.plant,
-                {"Right": [patch or rectangle_patch("block", (0.0, 0.0, 0.0), SIZE, (3, 3))]},
+                {"Right": [patch or rectangle_patch("block", (0.0, 0.0, -0.5 * SIZE[2]), SIZE[:2], (3, 3))]},
                 Plane(slope=-slope),
                 law,
                 np.zeros(6),
