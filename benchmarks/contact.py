@@ -245,6 +245,7 @@ def draw(walk: str, shown: dict[str, Any], end: float) -> None:
     since = f"{end - LAST:g} s" if walk == "thesis" else "a landing of the foot"
     level(forces.axes[0], shown[MODELS[0]][0].subject.mass * GRAVITY, "body weight")
     soles.axes[1].set_yscale("symlog", linthresh=1.0)
+    soles.axes[1].yaxis.set_major_formatter("{x:g}")
     forces.axes[2].set_ylim(0.0, 1.1)
     for figure, names in (
         (forces, ("vertical [N]", "fore-aft [N]", "friction use")),
