@@ -19,7 +19,7 @@ class Caution:
 
     free_error: float = quantity(0.2, "m", 0.0, 1.0)
     """Largest error of the DCM at touchdown that is predicted during a step, up to which the next step is an ordinary
-    one. In an undisturbed walk of 0.7 to 1.4 m/s it is 0.08 to 0.17 m, on hydroelastic contact up to 0.21 m."""
+    one. In an undisturbed walk of 0.7 to 1.4 m/s it is 0.08 to 0.18 m."""
 
     full_error: float = quantity(0.35, "m", 0.0, 2.0)
     """Error from which on the next step is a careful one."""
