@@ -7,6 +7,7 @@ The process that holds the client decides alone which rows are written.
 """
 
 import re
+import threading
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -14,7 +15,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 import pyarrow as pa
@@ -36,6 +36,9 @@ except ImportError:
 
 POLL_PERIOD = 0.2
 """Time between two looks at whether to stop [s]."""
+
+UNFINISHED = ("pending", "lost")
+"""States of a future whose result is not there, or no longer."""
 
 MIN_ROOM = 32
 """Jobs that are at the cluster at a time, beyond four for each worker: short ones are handled in batches."""
@@ -79,7 +82,7 @@ def run_jobs[J: Indexed](
     prefix = f"{function.__name__}-{uuid.uuid4().hex}"
     waiting: dict[str, J] = {}
     futures: dict[str, Future[Any]] = {}
-    finished: SimpleQueue[Future[Any]] = SimpleQueue()
+    finished = threading.Event()
     remaining = iter(jobs)
     room, counted = 0, -THREADS_PERIOD
     try:
@@ -91,16 +94,14 @@ def run_jobs[J: Indexed](
                 waiting |= batch
                 for future in _submit(client, function, batch):
                     futures[str(future.key)] = future
-                    future.add_done_callback(finished.put)
+                    future.add_done_callback(lambda _: finished.set())
             if not waiting:
                 return
-            done = []
-            for future in _taken(finished, POLL_PERIOD):
-                if future.status in ("pending", "lost"):
-                    # The worker died with the result, which another one computes again.
-                    future.add_done_callback(finished.put)
-                else:
-                    done.append(future)
+            # The event only shortens the wait: a result whose worker died with it is computed again, and Dask calls
+            # back once.
+            finished.wait(POLL_PERIOD)
+            finished.clear()
+            done = [future for future in futures.values() if future.status not in UNFINISHED]
             rows = _rows_of(client, done)
             for future in done:
                 # The scheduler forgets a result that nobody holds.
@@ -138,16 +139,6 @@ def _submit[J](client: Client, function: Callable[[J], Row], jobs: Mapping[str, 
 
 def _apply(function: Callable[[Any], Row], job: bytes) -> Row:
     return function(loads(job))
-
-
-def _taken(queue: SimpleQueue[Future[Any]], timeout: float) -> list[Future[Any]]:
-    """What a queue holds; if it is empty, what comes first within `timeout` [s]."""
-    taken = []
-    with suppress(Empty):
-        taken.append(queue.get(timeout=timeout))
-        while True:
-            taken.append(queue.get_nowait())
-    return taken
 
 
 def _rows_of(client: Client, futures: list[Future[Any]]) -> dict[str, Row]:
