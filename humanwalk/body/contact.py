@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body.flesh import Flesh
+from humanwalk.body.model_text import number
 from humanwalk.body.shapes import Vector3
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
@@ -123,18 +124,19 @@ def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
     return tuple(spheres)
 
 
-def sole_properties(sphere: ContactSphere, flesh: Flesh) -> dict[str, float | None]:
-    """Return the contact properties of a sphere by their names in Drake's model files; None: a tag without a value."""
-    return {
+def sole_properties(sphere: ContactSphere, flesh: Flesh) -> dict[str, str]:
+    """Return the contact properties of a sphere as texts, by their tags in Drake's model files."""
+    values = {
         "mu_static": FRICTION,
         "mu_dynamic": FRICTION,
         "hunt_crossley_dissipation": flesh.sole_dissipation,
         "relaxation_time": flesh.sole_relaxation_time,
         "point_contact_stiffness": flesh.sole_stiffness,
-        "compliant_hydroelastic": None,
         "hydroelastic_modulus": flesh.sole_modulus,
         "mesh_resolution_hint": MESH_EDGE * sphere.radius,
     }
+    texts = {f"drake:{name}": number(value) for name, value in values.items()}
+    return {**texts, "drake:compliant_hydroelastic": ""}
 
 
 def sole_patches(skeleton: Skeleton, side: Side) -> tuple[SolePatch, ...]:

@@ -126,8 +126,8 @@ def _collision(sphere: ContactSphere, flesh: Flesh) -> ET.Element:
     collision.append(_origin(sphere.center))
     ET.SubElement(ET.SubElement(collision, "geometry"), "sphere", {"radius": number(sphere.radius)})
     contact = ET.SubElement(collision, "drake:proximity_properties")
-    for name, value in sole_properties(sphere, flesh).items():
-        ET.SubElement(contact, f"drake:{name}", {} if value is None else {"value": number(value)})
+    for tag, text in sole_properties(sphere, flesh).items():
+        ET.SubElement(contact, tag, {"value": text})
     return collision
 
 

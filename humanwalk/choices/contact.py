@@ -78,7 +78,7 @@ class PointContact(_DrakeContact):
 
 @dataclass(frozen=True)
 class HydroelasticContact(_DrakeContact):
-    """The same spheres, compliant, with Drake's hydroelastic contact on rigid ground."""
+    """Six compliant spheres under each foot, with Drake's hydroelastic contact on rigid ground."""
 
     model = ContactModel.kHydroelasticWithFallback
 

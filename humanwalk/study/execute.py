@@ -97,8 +97,8 @@ def run_jobs[J: Indexed](
                     future.add_done_callback(lambda _: finished.set())
             if not waiting:
                 return
-            # The event only shortens the wait: a result whose worker died with it is computed again, and Dask calls
-            # back once.
+            # Dask calls back once, even for a result that is lost after that and computed again; so the event only
+            # ends the wait, and the states tell which results are there.
             finished.wait(POLL_PERIOD)
             finished.clear()
             done = [future for future in futures.values() if future.status not in UNFINISHED]

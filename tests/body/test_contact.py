@@ -23,11 +23,12 @@ def test_the_area_of_a_face_is_divided_among_points_up_to_its_rim(grid: tuple[in
 
 def test_the_spheres_of_a_foot_stand_within_its_flat_sole(skeleton: Skeleton) -> None:
     """All contact models offer nearly the same support."""
-    patches = {patch.body: patch.p_BoQ_B for side in SIDES for patch in sole_patches(skeleton, side)}
+    patches = {patch.body: patch for side in SIDES for patch in sole_patches(skeleton, side)}
     spheres = contact_spheres(skeleton)
     assert {sphere.body for sphere in spheres} == set(patches)
     for sphere in spheres:
-        corners = patches[sphere.body]
+        corners = patches[sphere.body].p_BoQ_B
+        assert patches[sphere.body].area.sum() == pytest.approx(np.prod(np.ptp(corners[:, :2], axis=0)))
         np.testing.assert_allclose(corners[:, 2], sphere.center[2] - sphere.radius, atol=1e-12)
         assert np.all(corners[:, :2].min(axis=0) < sphere.center[:2])
         assert np.all(sphere.center[:2] < corners[:, :2].max(axis=0))
