@@ -11,12 +11,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import dask
 import pytest
 from distributed import Client, LocalCluster
 
 from humanwalk.choices import BalancedController
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import load_scenario
+from humanwalk.study.cluster import SETTINGS
 from humanwalk.study.row import Row, run_columns
 from humanwalk.study.search import SAMPLERS
 from humanwalk.study.trial import OF_RUNS, RUNS, Trial
@@ -68,9 +70,13 @@ def broken(trial: Trial) -> Row:
 
 @contextmanager
 def threads(number: int) -> Iterator[Client]:
-    """A cluster within this process, whose workers find the functions of this module."""
+    """A cluster within this process, whose workers find the functions of this module, with the settings of studies."""
     options = {"processes": False, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0"}
-    with LocalCluster(n_workers=number, **options) as cluster, Client(cluster) as client:
+    with (
+        dask.config.set(SETTINGS),
+        LocalCluster(n_workers=number, **options) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
         yield client
 
 
