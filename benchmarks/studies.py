@@ -180,6 +180,15 @@ def balance_pushes_60() -> str:
     return study_section("balance_pushes_60", _pushes_by_time)
 
 
+def balance_pushes_sideways() -> str:
+    def section(rows: list[Row]) -> str:
+        survived, interval = _survival(rows)
+        fell = [f"{row[PUSH_TIME]:.2f}" for row in rows if not row["survived"]]
+        return f"{survived} survived ({interval})." + (f" Not survived: at {', '.join(fell)} s." if fell else "")
+
+    return study_section("balance_pushes_sideways", section)
+
+
 def balance_fast_pushes() -> str:
     def pushed(row: Row) -> str:
         return f"{row[FORWARD]:g} m/s, {row[PUSH_TIME]:.1f} s"
@@ -437,6 +446,7 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_bodies,
         balance_pushes,
         balance_pushes_60,
+        balance_pushes_sideways,
         push_random,
         balance_standing,
         balance_weight_shift,

@@ -40,6 +40,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("balance_bodies", 8),
         ("balance_pushes", 40),
         ("balance_pushes_60", 10),
+        ("balance_pushes_sideways", 40),
         ("balance_standing", 40),
         ("balance_weight_shift", 72),
         ("balance_invariance", 4),
@@ -127,7 +128,7 @@ def test_bodies_are_compared_at_the_dimensionless_speeds_of_the_default_man() ->
 
 
 def test_pushes_leave_time_to_fall() -> None:
-    for name in ("balance_pushes", "balance_pushes_60", "push_random", "subjects_pushes"):
+    for name in ("balance_pushes", "balance_pushes_60", "balance_pushes_sideways", "push_random", "subjects_pushes"):
         study = load_study(name)
         for scenario in map(study.scenario_at, study.points):
             (push,) = scenario.pushes.given
@@ -136,7 +137,7 @@ def test_pushes_leave_time_to_fall() -> None:
             assert push.duration == 0.1
 
 
-def test_random_pushes_have_every_direction_and_time_of_a_stride() -> None:
+def test_random_pushes_have_every_direction_and_time() -> None:
     points = load_study("push_random").points
     for name, low, high in (("time", 8.0, 9.04), ("direction", -math.pi, math.pi)):
         values = [point[f"pushes.given.0.{name}"] for point in points]
