@@ -47,7 +47,7 @@ class ForcePivot:
     120:110387); how the feet share it decides the moments of the hips (docs/decisions/0036-force-pivot.md).
     """
 
-    height: float = quantity(1.0, "m", 0.0, 2.0)
+    height: float = quantity(1.11, "m", 0.0, 2.0)
     """Height above the center of mass."""
 
     unit: float = quantity(3.0, "N", 0.5, 1e6)

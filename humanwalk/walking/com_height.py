@@ -31,11 +31,11 @@ class ComHeight:
     time_constant: float = quantity(0.25, "s", 0.02, 2.0)
     """Time constant of the mean height."""
 
-    amplitude: float = quantity(0.0056, "s2/m", 0.0, 0.05)
-    """Amplitude of the arcs per squared speed; the drop between two straight legs is proportional to the square of the
-    step length."""
+    amplitude: float = quantity(0.0215, "1/m", 0.0, 0.15)
+    """Amplitude of the arcs per squared step length, to which the drop between two straight legs is proportional: 1 /
+    (16 l) with legs of length l, 0.072 1/m."""
 
-    delay: float = quantity(0.029, "s", -0.3, 0.3)
+    delay: float = quantity(0.021, "s", -0.3, 0.3)
     """Time from touchdown to the lowest height."""
 
     lowering_time_constant: float = quantity(0.08, "s", 0.02, 2.0)
@@ -55,19 +55,20 @@ class ComHeight:
     heel_rise: float = quantity(0.03, "m", 0.0, 0.2)
     """Length that a leg gains when its heel rises (our choice)."""
 
-    def arc_amplitude(self, speed: float) -> float:
-        """Amplitude of the arcs [m] at a forward speed [m/s]."""
-        return self.amplitude * speed**2
+    def arc_amplitude(self, speed: float, step: float) -> float:
+        """Amplitude of the arcs [m] at a forward speed [m/s] with steps of a duration [s]."""
+        return self.amplitude * (speed * step) ** 2
 
-    def mean(self, speed: float, standing: float) -> float:
+    def mean(self, speed: float, step: float, standing: float) -> float:
         """Mean height in a level walk [m].
 
         Args:
             speed: Forward speed [m/s].
+            step: Duration of a step [s].
             standing: Height of the center of mass with straight legs [m].
         """
         lowering = self.lowering_per_speed * max(speed - self.fast_speed, 0.0)
-        return self.walking * standing - self.arc_amplitude(speed) - lowering
+        return self.walking * standing - self.arc_amplitude(speed, step) - lowering
 
     def max_com_height_for_reach(self, reach: complex, leg: float, standing: float) -> float:
         """Largest height of the center of mass above a foothold that a straight leg reaches [m].
@@ -119,7 +120,7 @@ class ComHeight:
 
     def arc(self, since_touchdown: float, step: float, speed: float) -> ScalarMotion:
         """Height above the mean, at a time since touchdown [s] in steps of a duration [s], at a forward speed [m/s]."""
-        amplitude, rate = self.arc_amplitude(speed), 2.0 * math.pi / step
+        amplitude, rate = self.arc_amplitude(speed, step), 2.0 * math.pi / step
         angle = rate * (since_touchdown - self.delay)
         cosine, sine = amplitude * math.cos(angle), amplitude * math.sin(angle)
         return ScalarMotion(-cosine, rate * sine, rate**2 * cosine)

@@ -73,8 +73,9 @@ class StepPlacement:
     freeze_time: float = quantity(0.05, "s", 0.0, 0.5)
     """The foothold is constant for this long before touchdown."""
 
-    face_freeze_time: float = quantity(0.15, "s", 0.0, 0.5)
-    """The face of the foothold does not change for this long before touchdown."""
+    face_freeze_time: float = quantity(0.25, "s", 0.0, 0.5)
+    """The face of the foothold does not change for this long before touchdown. With 0.15 s a sinking foot goes back to
+    an upper tread too late, and its heel catches the edge (docs/decisions/0055-slow-walks.md)."""
 
     def min_step_width(self, x: float) -> float:
         """Minimum sideways distance [m] of a foot that is x [m] ahead of the stance foot."""

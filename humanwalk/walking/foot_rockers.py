@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
@@ -37,12 +37,14 @@ class FootRockers:
     """Least vertical force under the heel from touchdown until the foot is flat [body weights]. Without it the heel
     leaves the ground again after its impact: the planned pressure moves to the new foot over all of double support."""
 
-    ball: float = quantity(0.233, "s", 0.0, 0.3)
+    ball: float = quantity(0.22, "s", 0.0, 0.3)
     """Time from heel-off to touchdown of the other foot at `full_pitch_speed` and faster. It is shorter below, because
     a walker on its toes cannot move the zero-moment point back."""
 
-    descent: float = quantity(0.35, "s", 0.0, 0.6)
-    """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down."""
+    descent: float = quantity(0.3, "s", 0.0, 0.6)
+    """The same in a step down: an ankle that bends no further does not let the body sink while the heel is down. With
+    0.35 s a walker that is pushed backward has its zero-moment point on the ball for too long
+    (docs/decisions/0055-slow-walks.md)."""
 
     unloading: float = quantity(7.0, "1/s", 0.5, 1e4)
     """Rate at which the largest vertical force under the heel falls to zero at heel-off [body weights per second].
@@ -64,15 +66,24 @@ class FootRockers:
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
     too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness_trials.md)."""
 
-    late_rise: float = quantity(0.89, "", 0.0, 1.0)
+    late_rise: float = quantity(0.82, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
-    toes: float = quantity(0.62, "rad", 0.0, 1.2)
+    toes: float = quantity(0.73, "rad", 0.0, 1.2)
     """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
     (docs/likeness_trials.md, "What makes the forces human")."""
 
+    toe_range: float = quantity(0.24, "rad", 0.01, 0.6)
+    """Half the range of pitch around `toes` in which the toes begin to turn with the foot; at most `toes`. If they
+    began at once, the planned forces would jump (docs/likeness_trials.md, "Slow walks")."""
+
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)
     """Forward speed below which the feet leave the ground flat."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError if the toes would begin to turn before the heel rises."""
+        if self.toe_range > self.toes:
+            raise ParameterError(f"toe_range: {self.toe_range:g} is too large; allowed: up to toes, {self.toes:g} rad")
 
     def heel_rises(self, speed: float) -> bool:
         """Whether there is a heel-off at a forward speed [m/s]."""
@@ -130,6 +141,16 @@ class FootRockers:
         rate = final * s * (2.0 * (1.0 - late) + 3.0 * late * s) / duration
         acceleration = final * (2.0 * (1.0 - late) + 6.0 * late * s) / duration**2
         pitch = ScalarMotion(value, rate, acceleration)
-        largest = (1.0 - rollover.climbing) * self.toes + rollover.climbing * max(self.toes, final)
-        toes = pitch[:2] if value <= largest else (largest, 0.0)
+        stay = max(self.toes, final + self.toe_range)
+        toes = self._toes(value, rate, (1.0 - rollover.climbing) * self.toes + rollover.climbing * stay)
         return FootReference(FootTask.HEEL_OFF, load, yaw, R_WS, pitch=pitch, toes=toes, heel=(0.0, 0.0))
+
+    def _toes(self, pitch: float, rate: float, largest: float) -> tuple[float, float]:
+        """Extension of the toes and its rate [rad, rad/s] at a pitch of the foot and its rate.
+
+        They stay on the ground up to a pitch of `largest - toe_range`, and turn with the foot from `largest +
+        toe_range` on. Between, the share of the pitch's rate with which they turn grows in proportion to the pitch.
+        """
+        turning = clip((pitch - largest + self.toe_range) / (2.0 * self.toe_range), 0.0, 1.0)
+        extension = min(pitch, largest + self.toe_range) - self.toe_range * turning**2
+        return extension, (1.0 - turning) * rate

@@ -43,7 +43,7 @@ class StepPlannerParameters:
     """Distance of a foot from its place beside the other one up to which a step is the last one. It is shorter than a
     tread: with a foot on each of two treads the walker fell (docs/balance.md, "Standing")."""
 
-    shift_margin: float = quantity(0.01, "m", 0.0, 0.1)
+    shift_margin: float = quantity(0.015, "m", 0.0, 0.1)
     """Distance by which the DCM may leave the base of support in the weight shift (our choice): at its end before a
     walk at 1 m/s the DCM is at the front of the base of support."""
 

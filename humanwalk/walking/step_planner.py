@@ -176,9 +176,9 @@ class StepPlanner:
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
         if swing is None:
             excess = placement.double_support_excess(desired, state.stance, foot)
-            # If the old foot left before the new one carries load, the body would fall freely.
-            is_loaded = body.foot(state.stance).force >= timing.loaded_force
-            phase_rate = timing.phase_rate(excess, timing.double_support_rate_limit) if is_loaded else 1.0
+            # If the old foot left before the new one carries the weight, the body would fall.
+            limit = timing.double_support_rate_limit * body.load_share(state.stance)
+            phase_rate = timing.phase_rate(excess, limit)
             foothold = state.old_foot
             other_foot = foot_behind(state, command, p, state.swing_side in self._passive_ankles)
         else:
@@ -248,7 +248,7 @@ class StepPlanner:
         if state.phase is Phase.STAND:
             goal = law.standing * self._standing_com_height
         else:
-            goal = law.mean(forward_speed, self._standing_com_height)
+            goal = law.mean(forward_speed, state.timing.step, self._standing_com_height)
         acceleration = law.approach(state.height, state.height_rate, goal, max_height)
         mean = ScalarMotion(state.height, state.height_rate, acceleration)
         rate = state.height_rate + period * acceleration

@@ -30,8 +30,12 @@ class StepTiming:
     """Sideways speed from which on no step is longer than `step` (our choice): in a walk to the side one foot takes two
     steps' way, and at 0.5 m/s forward and 0.3 m/s sideways the walker fell with steps of 0.65 s."""
 
-    double_support: float = quantity(0.0985, "s", 0.04, 0.4)
-    """First part of the step."""
+    double_support: float = quantity(0.098, "s", 0.04, 0.4)
+    """First part of a step that takes `step`."""
+
+    double_support_exponent: float = quantity(1.6, "", 0.0, 3.0)
+    """Double support is proportional to this power of the duration of the step: its share is 22 % of the cycle in
+    people at 0.9 m/s and 19 % at 1.4 m/s."""
 
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
     """From quiet standing onto the first stance foot."""
@@ -46,7 +50,8 @@ class StepTiming:
     """Largest increase of the rate in single support."""
 
     double_support_rate_limit: float = quantity(6.0, "", 0.0, 10.0)
-    """Largest increase of the rate in double support, for a foothold across the stance foot or a wide one."""
+    """Largest increase of the rate in double support, for a foothold across the stance foot or a wide one, per share of
+    the weight that the new foot carries (docs/decisions/0055-slow-walks.md)."""
 
     touchdown_force: float = quantity(30.0, "N", 0.0, 500.0)
     """Vertical force above which the swing ends: 4 % of the weight of the body. A heel can rest on the ground with less
@@ -86,7 +91,9 @@ class StepTiming:
         """The timing of a step that takes `factor` times as long."""
         if factor == 1.0:
             return self
-        return replace(self, step=factor * self.step, double_support=factor * self.double_support)
+        step = factor * self.step
+        double_support = factor**self.double_support_exponent * self.double_support
+        return replace(self, step=step, double_support=min(double_support, MAX_DOUBLE_SUPPORT * step))
 
     @property
     def single_support(self) -> float:

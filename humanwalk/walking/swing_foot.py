@@ -43,14 +43,14 @@ class SwingParameters:
     clearance: float = quantity(0.09, "m", 0.0, 0.3)
     """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
 
-    toe_up: float = quantity(0.28, "rad s/m", 0.0, 0.6)
+    toe_up: float = quantity(0.288, "rad s/m", 0.0, 0.6)
     """Pitch at touchdown per forward speed, toes up: 22 degrees at 1.4 m/s."""
 
     heel_height: float = quantity(0.0, "", 0.0, 1.0)
     """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the
     heel of a pitched foot meets the ground before the end of the swing, while it is fast."""
 
-    landing_sink_rate: float = quantity(0.07, "m/s", 0.0, 0.5)
+    landing_sink_rate: float = quantity(0.127, "m/s", 0.0, 0.5)
     """Downward speed of the ankle at the planned touchdown."""
 
     push_off: float = quantity(8.4, "1/m", 0.0, 30.0)

@@ -96,6 +96,12 @@ class BodyState:
         """The foot of a side."""
         return self.right if side == "Right" else self.left
 
+    def load_share(self, side: Side) -> float:
+        """Share of the vertical force on both feet that the foot of a side carries; 0 in the air."""
+        right, left = max(self.right.force, 0.0), max(self.left.force, 0.0)
+        load = right if side == "Right" else left
+        return load / (right + left) if load > 0.0 else 0.0
+
     @staticmethod
     def measured(com: Array, ankles: Array, forces: FootForces, ground: Ground) -> "BodyState":
         """Return the measured state.

@@ -22,12 +22,18 @@ def test_rates_are_derivatives(t: float, speed: float) -> None:
 @given(speeds)
 def test_the_top_is_as_high_at_every_speed(speed: float) -> None:
     top = HEIGHT.arc(HEIGHT.delay + 0.5 * STEP, STEP, speed)[0]
-    assert top == pytest.approx(HEIGHT.arc_amplitude(speed))
+    assert top == pytest.approx(HEIGHT.arc_amplitude(speed, STEP))
 
 
 def test_it_is_lowest_soon_after_touchdown() -> None:
     heights = {t / 1000: HEIGHT.arc(t / 1000, STEP, 1.4)[0] for t in range(520)}
     assert min(heights, key=heights.get) == pytest.approx(HEIGHT.delay)  # type: ignore[arg-type]
+
+
+@given(speeds, st.floats(0.3, 1.2))
+def test_the_arc_is_proportional_to_the_square_of_the_step_length(speed: float, step: float) -> None:
+    top = HEIGHT.arc(HEIGHT.delay + 0.5 * step, step, speed).value
+    assert top == pytest.approx(HEIGHT.amplitude * (speed * step) ** 2)
 
 
 def test_in_standing_there_is_no_arc() -> None:
@@ -39,13 +45,13 @@ LEG, STANDING = 0.864, 0.97
 
 @given(st.floats(-1.0, HEIGHT.fast_speed))
 def test_the_tops_of_the_arcs_are_as_high_up_to_the_fast_speed(speed: float) -> None:
-    top = HEIGHT.mean(speed, STANDING) + HEIGHT.arc_amplitude(speed)
+    top = HEIGHT.mean(speed, STEP, STANDING) + HEIGHT.arc_amplitude(speed, STEP)
     assert top == pytest.approx(HEIGHT.walking * STANDING)
 
 
 @given(st.floats(HEIGHT.fast_speed, 3.0), st.floats(0.0, 0.5))
 def test_a_faster_walk_is_lower(speed: float, more: float) -> None:
-    lower, higher = (HEIGHT.mean(v, STANDING) + HEIGHT.arc_amplitude(v) for v in (speed + more, speed))
+    lower, higher = (HEIGHT.mean(v, STEP, STANDING) + HEIGHT.arc_amplitude(v, STEP) for v in (speed + more, speed))
     assert higher - lower == pytest.approx(HEIGHT.lowering_per_speed * more)
 
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.quantity import ParameterError
 from humanwalk.walking.foot_rockers import FootRockers, Rollover
 from humanwalk.walking.walking_reference import FootReference, FootTask
 
@@ -58,21 +59,40 @@ def test_rates_are_derivatives(since: float, late_rise: float) -> None:
     assert (after[1] - before[1]) / (2 * h) == pytest.approx(here[2], rel=1e-4)
 
 
+@given(st.floats(0.01, 0.3), st.floats(0.3, 1.2), st.floats(0.05, 0.3), st.floats(0.0, 1.0))
+def test_the_rate_of_the_toes_is_a_derivative(since: float, most: float, half: float, climbing: float) -> None:
+    h, rockers = 1e-6, FootRockers(toes=most, toe_range=half)
+    before, here, after = (over_ball(since + d, rockers=rockers, climbing=climbing).toes for d in (-h, 0.0, h))
+    assert (after[0] - before[0]) / (2 * h) == pytest.approx(here[1], abs=1e-3)
+
+
 def test_toes_stay_on_the_ground_while_the_foot_pitches() -> None:
     reference = over_ball(0.15)
     assert reference.task is FootTask.HEEL_OFF
     assert reference.toes == reference.pitch[:2]
 
 
-@given(st.floats(0.0, 0.22), st.floats(0.1, 1.2))
-def test_a_foot_that_pitches_further_than_its_toes_extend_rolls_over_them(since: float, most: float) -> None:
-    reference = over_ball(since, rockers=FootRockers(toes=most))
+@given(st.floats(0.0, 0.5), st.floats(0.3, 1.2), st.floats(0.01, 0.3))
+def test_a_foot_that_pitches_further_than_its_toes_extend_rolls_over_them(
+    since: float, most: float, half: float
+) -> None:
+    reference = over_ball(since, rockers=FootRockers(toes=most, toe_range=half))
     extension, rate = reference.toes
-    assert extension == min(reference.pitch.value, most)
-    assert rate == (reference.pitch.rate if reference.pitch.value <= most else 0.0)
+    pitch = reference.pitch
+    assert -1e-12 <= extension <= min(pitch.value, most) + 1e-12
+    assert -1e-12 <= rate <= pitch.rate + 1e-12
+    if pitch.value <= most - half:
+        assert reference.toes == pitch[:2]
+    if pitch.value >= most + half:
+        assert reference.toes == (pytest.approx(most), 0.0)
 
 
-@given(st.floats(0.0, 0.22), st.floats(0.1, 1.2), st.floats(0.0, 1.2))
+def test_toes_that_would_turn_before_the_heel_rises_are_refused() -> None:
+    with pytest.raises(ParameterError, match=r"^toe_range: 0\.3 is too large; allowed: up to toes, 0\.2 rad"):
+        FootRockers(toes=0.2, toe_range=0.3)
+
+
+@given(st.floats(0.0, 0.22), st.floats(0.3, 1.2), st.floats(0.0, 1.2))
 def test_toes_stay_on_the_ground_in_a_step_up_or_down(since: float, most: float, speed: float) -> None:
     reference = over_ball(since, speed, FootRockers(toes=most), climbing=1.0)
     assert reference.toes == reference.pitch[:2]

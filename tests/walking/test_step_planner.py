@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from humanwalk.body import SIDES
 from humanwalk.body.contact import SoleExtent
 from humanwalk.body.limbs import other_side
 from humanwalk.numerics import Array
@@ -321,6 +322,19 @@ def test_on_boxes_a_foot_is_on_its_way_to_the_box_on_which_it_will_step_across(t
     last = [state for state in states if state.swing is not None][-1]
     assert last.swing is not None
     assert OUTWARD[stance] * last.local(last.swing.foothold.position).imag < PARAMETERS.placement.min_own_side_offset
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_in_double_support_the_clock_hurries_in_proportion_to_the_load_of_the_new_foot(share: float) -> None:
+    """A foot that left while it carries the weight would let the body fall."""
+    walk = pendulum_walk(planner(), walk_at(0.8), 3.0)
+    state, body = next((s, b) for t, s, _, b in walk if t > 2.0 and s.phase is Phase.DOUBLE_SUPPORT and s.elapsed > 0.0)
+    pushed = replace(body, com_velocity=body.com_velocity - OUTWARD[state.stance] * 1j)
+    loads = {state.stance: share * 700.0, state.swing_side: (1.0 - share) * 700.0}
+    right, left = (replace(pushed.foot(side), force=loads[side]) for side in SIDES)
+    hurried = planner().update(state, replace(pushed, right=right, left=left), WALK)[0].elapsed - state.elapsed
+    timing = state.timing
+    assert hurried == pytest.approx(PERIOD * (1.0 + share * timing.double_support_rate_limit))
 
 
 def test_the_force_on_an_unloading_foot_is_limited_unless_its_ankle_is_passive() -> None:
