@@ -10,8 +10,11 @@ forces = st.floats(-500.0, 3000.0)
 
 
 def body(right: float, left: float) -> BodyState:
-    feet = (FootState(0j, 0j, 0.07, 0.0, 0.0, 0.0, 0.0, force) for force in (right, left))
-    return BodyState(0j, 0j, 0.93, *feet)
+    return BodyState(0j, 0j, 0.93, loaded(right), loaded(left))
+
+
+def loaded(force: float) -> FootState:
+    return FootState(0j, 0j, 0.07, 0.0, 0.0, 0.0, 0.0, force)
 
 
 @given(forces, forces)
