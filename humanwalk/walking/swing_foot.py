@@ -13,7 +13,7 @@ from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
 MAX_TOE_UP = 0.442
-"""Largest pitch at touchdown [rad]: that of 1.6 m/s."""
+"""Largest pitch at touchdown [rad]: that of 1.53 m/s."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class SwingParameters:
     """Minimum rise of the ankle above its height in standing: a foot that leaves the ground flat would scuff."""
 
     toe_up: float = quantity(0.288, "rad s/m", 0.0, 0.6)
-    """Pitch at touchdown per forward speed, toes up: 22 degrees at 1.4 m/s."""
+    """Pitch at touchdown per forward speed, toes up: 23 degrees at 1.4 m/s."""
 
     heel_height: float = quantity(0.0, "", 0.0, 1.0)
     """Share of the height that the ankle of a foot on its heel has above that of a flat foot, at touchdown. With 0 the

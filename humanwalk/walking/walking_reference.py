@@ -98,9 +98,8 @@ class BodyState:
 
     def load_share(self, side: Side) -> float:
         """Share of the vertical force on both feet that the foot of a side carries; 0 in the air."""
-        right, left = max(self.right.force, 0.0), max(self.left.force, 0.0)
-        load = right if side == "Right" else left
-        return load / (right + left) if load > 0.0 else 0.0
+        load = max(self.foot(side).force, 0.0)
+        return load / (max(self.right.force, 0.0) + max(self.left.force, 0.0)) if load > 0.0 else 0.0
 
     @staticmethod
     def measured(com: Array, ankles: Array, forces: FootForces, ground: Ground) -> "BodyState":

@@ -325,16 +325,16 @@ def test_on_boxes_a_foot_is_on_its_way_to_the_box_on_which_it_will_step_across(t
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_in_double_support_the_clock_hurries_in_proportion_to_the_load_of_the_new_foot(share: float) -> None:
+def test_in_double_support_the_clock_runs_faster_in_proportion_to_the_load_of_the_new_foot(share: float) -> None:
     """A foot that left while it carries the weight would let the body fall."""
     walk = pendulum_walk(planner(), walk_at(0.8), 3.0)
     state, body = next((s, b) for t, s, _, b in walk if t > 2.0 and s.phase is Phase.DOUBLE_SUPPORT and s.elapsed > 0.0)
     pushed = replace(body, com_velocity=body.com_velocity - OUTWARD[state.stance] * 1j)
     loads = {state.stance: share * 700.0, state.swing_side: (1.0 - share) * 700.0}
     right, left = (replace(pushed.foot(side), force=loads[side]) for side in SIDES)
-    hurried = planner().update(state, replace(pushed, right=right, left=left), WALK)[0].elapsed - state.elapsed
+    advance = planner().update(state, replace(pushed, right=right, left=left), WALK)[0].elapsed - state.elapsed
     timing = state.timing
-    assert hurried == pytest.approx(PERIOD * (1.0 + share * timing.double_support_rate_limit))
+    assert advance == pytest.approx(PERIOD * (1.0 + share * timing.double_support_rate_limit))
 
 
 def test_the_force_on_an_unloading_foot_is_limited_unless_its_ankle_is_passive() -> None:
