@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from studies import STUDIES, keep, table
+from terrain_counts import terrain_walks
 
 from humanwalk.bench.result import COLUMNS, read_result
 from humanwalk.files import write_text
@@ -179,6 +180,7 @@ PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers,
 PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
     DOCS / "performance.md": PERFORMANCE,
     DOCS / "contact.md": (contact_thesis, contact_walk),
+    DOCS / "howto/terrain.md": (terrain_walks,),
     **{DOCS / page: sections for page, sections in STUDIES.items()},
 }
 

@@ -138,7 +138,7 @@ def _seeds(name: str) -> str:
         for speed, walks in groupby(rows, key=lambda row: study.value_at(row, FORWARD)):
             runs = list(walks)
             up = [row for row in runs if row["survived"]]
-            yield [f"{speed:g} m/s", *_survival(runs)] + [
+            yield [f"{speed:g} m/s", *survival_texts(runs)] + [
                 f"{min(values):.{digits}f} to {max(values):.{digits}f}"
                 for values, digits in (
                     ([row["mean_speed_m_s"] for row in up], 3),
@@ -156,7 +156,7 @@ def balance_turns() -> str:
         for turn, walks in groupby(rows, key=lambda row: row["turn"]):
             runs = list(walks)
             off = [100.0 * row["path_deviation_m"] for row in runs if row["survived"]]
-            yield [turn, *_survival(runs), f"{min(off):.0f} to {max(off):.0f}" if off else "-"]
+            yield [turn, *survival_texts(runs), f"{min(off):.0f} to {max(off):.0f}" if off else "-"]
 
     headings = ["turn", "survived", "95 % interval", "off the path cm"]
     return study_section("balance_turns", lambda rows: table(headings, lines(rows)))
@@ -164,7 +164,7 @@ def balance_turns() -> str:
 
 def balance_commands() -> str:
     def section(rows: list[Row]) -> str:
-        survived, interval = _survival(rows)
+        survived, interval = survival_texts(rows)
         off = [100.0 * row["path_deviation_m"] for row in rows if row["survived"]]
         median, most = np.median(off), max(off)
         return f"{survived} survived ({interval}). Off the path: {median:.0f} cm (median), at most {most:.0f} cm."
@@ -182,7 +182,7 @@ def balance_pushes_60() -> str:
 
 def balance_pushes_sideways() -> str:
     def section(rows: list[Row]) -> str:
-        survived, interval = _survival(rows)
+        survived, interval = survival_texts(rows)
         fell = [f"{row[PUSH_TIME]:.2f}" for row in rows if not row["survived"]]
         return f"{survived} survived ({interval})." + (f" Not survived: at {', '.join(fell)} s." if fell else "")
 
@@ -230,7 +230,7 @@ def _pushes(rows: list[Row], heading: str, group: Callable[[Row], str], end: Cal
     names, directions = dict.fromkeys(map(group, rows)), sorted({row[PUSH_DIRECTION] for row in rows})
     lines = [[name, *(ends[name, direction] for direction in directions)] for name in names]
     headings = [heading, *(f"{math.degrees(direction):.0f}°" for direction in directions)]
-    survived, interval = _survival(rows)
+    survived, interval = survival_texts(rows)
     return f"{survived} survived ({interval}):\n\n" + table(headings, lines)
 
 
@@ -239,9 +239,9 @@ def push_random() -> str:
         def line(level: Level) -> list[str]:
             inside = [rows[index] for index in level.rows]
             ends = [math.degrees(choose(row[PUSH_DIRECTION] for row in inside)) for choose in (min, max)]
-            return [f"{ends[0]:.0f}° to {ends[1]:.0f}°", *_survival(inside)]
+            return [f"{ends[0]:.0f}° to {ends[1]:.0f}°", *survival_texts(inside)]
 
-        survived, interval = _survival(rows)
+        survived, interval = survival_texts(rows)
         levels = levels_of(factor_array([row[PUSH_DIRECTION] for row in rows]), 8)
         return (
             f"{survived} survived ({interval}):\n\n"
@@ -275,13 +275,13 @@ def _subjects(name: str, group: Callable[[Row], str]) -> str:
     def line(label: str, runs: list[Row]) -> list[str]:
         up = [row for row in runs if row["survived"]]
         if not up:
-            return [label, *_survival(runs), "-", "-"]
+            return [label, *survival_texts(runs), "-", "-"]
         commanded = [study.value_at(row, FORWARD) for row in up]
         ratios = [row["mean_speed_m_s"] / speed - 1.0 for row, speed in zip(up, commanded, strict=True)]
         costs = [row["cost_of_transport"] for row in up]
         return [
             label,
-            *_survival(runs),
+            *survival_texts(runs),
             f"{100 * min(ratios):+.1f} to {100 * max(ratios):+.1f} %",
             f"{min(costs):.2f} to {max(costs):.2f}",
         ]
@@ -430,7 +430,8 @@ def _end(row: Row) -> str:
     return f"{row['end']} at {row['duration_s']:g} s"
 
 
-def _survival(rows: Sequence[Row]) -> tuple[str, str]:
+def survival_texts(rows: Sequence[Row]) -> tuple[str, str]:
+    """Number of rows that survived, and the interval of their share."""
     found = Survival.of(np.array([row["survived"] for row in rows]))
     return f"**{found.survived} of {found.runs}**", f"{100 * found.low:.0f} to {100 * found.high:.0f} %"
 

@@ -61,6 +61,8 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_stones", 40),
         ("terrain_course", 40),
         ("terrain_edges", 150),
+        ("terrain_blind", 55),
+        ("terrain_treads", 40),
         ("terrain_stops", 60),
         ("terrain_pushes", 80),
         ("terrain_bodies", 80),

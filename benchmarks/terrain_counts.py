@@ -1,0 +1,60 @@
+"""The table of walks on terrain: how many of each study and ground are completed.
+
+`humanwalk study terrain_rough -o runs/terrain_rough`, then `python benchmarks/pages.py runs/terrain_rough`.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from likeness import Row
+from studies import PUSH_IMPULSE, RESULTS, study_results, survival_texts, table
+
+from humanwalk.study.study import load_study
+
+DIRECTION = "terrain.course.pieces.0.stairs.direction"
+UNITS = {PUSH_IMPULSE: "{:g} N s"}
+"""How numbers of a factor are written."""
+
+GROUNDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "terrain_edges": ("begins 0.5 to 1.4 m ahead", ("ground",)),
+    "terrain_treads": ("stairs", (DIRECTION, "body")),
+    "terrain_rough": ("boxes of ±5 cm", ()),
+    "terrain_rough_blind": ("boxes of ±2 cm, blind", ()),
+    "terrain_blind": ("blind", ("ground",)),
+    "terrain_stones": ("stones of 30 cm, gaps of 20 cm, ±5 cm", ()),
+    "terrain_stops": ("stop and go", ("ground",)),
+    "terrain_turns": ("turn of 0.2 or 0.35 rad/s on boxes of ±2 cm", ("speed",)),
+    "terrain_commands": ("commands at random", ("ground",)),
+    "terrain_bodies": ("", ("body", "ground")),
+    "terrain_pushes": ("30 N s", ("ground",)),
+    "terrain_stairs_pushes": ("pushes on stairs", ("ground", PUSH_IMPULSE)),
+    "terrain_mixed": ("bodies, loads, grounds, speeds and pushes at random", ()),
+    "terrain_course": ("every kind of ground, 43 m", ()),
+}
+"""What the walks of a study have in common, and the factors that tell its grounds apart."""
+
+
+def terrain_walks() -> str:
+    """A line for each ground of each study that has been simulated."""
+    headings = ["study", "ground", "commanded m/s", "s", "completed", "95 % interval"]
+    return table(headings, [line for name in GROUNDS if (RESULTS / f"{name}.csv").exists() for line in _lines(name)])
+
+
+def _lines(name: str) -> Iterator[list[str]]:
+    study, (common, factors) = load_study(name), GROUNDS[name]
+
+    def ground(row: Row) -> str:
+        levels = [UNITS.get(factor, "{}").format(row[factor]) for factor in factors]
+        return ", ".join(filter(None, [common, *levels]))
+
+    rows = study_results(name).table.to_pylist()
+    for label in dict.fromkeys(map(ground, rows)):
+        walks = [row for row in rows if ground(row) == label]
+        scenarios = [study.scenario_at({column: row[column] for column in study.columns}) for row in walks]
+        speeds = [point.forward for scenario in scenarios for point in scenario.controller.command.points]
+        duration = max(scenario.duration for scenario in scenarios)
+        yield [f"`{name}`", label, _range(speeds), f"{duration:.3g}", *survival_texts(walks)]
+
+
+def _range(values: Sequence[float]) -> str:
+    least, most = min(values), max(values)
+    return f"{least:.2g}" if least == most else f"{least:.2g} to {most:.2g}"
