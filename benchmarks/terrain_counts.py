@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Iterator, Sequence
+from statistics import median
 
 from likeness import Row
 from studies import PUSH_IMPULSE, RESULTS, study_results, survival_texts, table
@@ -15,18 +16,18 @@ UNITS = {PUSH_IMPULSE: "{:g} N s"}
 """How numbers of a factor are written."""
 
 GROUNDS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "terrain_edges": ("begins 0.5 to 1.4 m ahead", ("ground",)),
+    "terrain_edges": ("0.5 to 1.4 m ahead", ("ground",)),
     "terrain_treads": ("stairs", (DIRECTION, "body")),
     "terrain_rough": ("boxes of ±5 cm", ()),
     "terrain_rough_blind": ("boxes of ±2 cm, blind", ()),
     "terrain_blind": ("blind", ("ground",)),
     "terrain_stones": ("stones of 30 cm, gaps of 20 cm, ±5 cm", ()),
     "terrain_stops": ("stop and go", ("ground",)),
-    "terrain_turns": ("turn of 0.2 or 0.35 rad/s on boxes of ±2 cm", ("speed",)),
+    "terrain_turns": ("turn on boxes of ±2 cm", ("speed",)),
     "terrain_commands": ("commands at random", ("ground",)),
     "terrain_bodies": ("", ("body", "ground")),
-    "terrain_pushes": ("30 N s", ("ground",)),
-    "terrain_stairs_pushes": ("pushes on stairs", ("ground", PUSH_IMPULSE)),
+    "terrain_pushes": ("push of 30 N s", ("ground",)),
+    "terrain_stairs_pushes": ("stairs", ("ground", PUSH_IMPULSE)),
     "terrain_mixed": ("bodies, loads, grounds, speeds and pushes at random", ()),
     "terrain_course": ("every kind of ground, 43 m", ()),
 }
@@ -34,8 +35,8 @@ GROUNDS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 def terrain_walks() -> str:
-    """A line for each ground of each study that has been simulated."""
-    headings = ["study", "ground", "commanded m/s", "s", "completed", "95 % interval"]
+    """A line for each ground of each study that has been simulated; walked: median of the completed walks."""
+    headings = ["ground", "study", "commanded m/s", "walked m/s", "s", "completed", "95 % interval"]
     return table(headings, [line for name in GROUNDS if (RESULTS / f"{name}.csv").exists() for line in _lines(name)])
 
 
@@ -52,7 +53,15 @@ def _lines(name: str) -> Iterator[list[str]]:
         scenarios = [study.scenario_at({column: row[column] for column in study.columns}) for row in walks]
         speeds = [point.forward for scenario in scenarios for point in scenario.controller.command.points]
         duration = max(scenario.duration for scenario in scenarios)
-        yield [f"`{name}`", label, _range(speeds), f"{duration:.3g}", *survival_texts(walks)]
+        walked = [row["mean_speed_m_s"] for row in walks if row["survived"] and len(set(speeds)) == 1]
+        yield [
+            label,
+            f"`{name}`",
+            _range(speeds),
+            f"{median(walked):.2f}" if walked else "-",
+            f"{duration:.3g}",
+            *survival_texts(walks),
+        ]
 
 
 def _range(values: Sequence[float]) -> str:
