@@ -37,6 +37,10 @@ class StepTiming:
     """Double support is proportional to this power of the duration of the step: its share is 22 % of the cycle in
     people at 0.9 m/s and 19 % at 1.4 m/s."""
 
+    longest_double_support: float = quantity(0.2, "s", 0.04, 1.0)
+    """Longest double support of a step that takes longer than `step`. Without this limit the walker fell on stairs up
+    with treads of 25 cm, whose steps take 0.9 s (docs/decisions/0055-slow-walks.md)."""
+
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
     """From quiet standing onto the first stance foot."""
 
@@ -93,7 +97,8 @@ class StepTiming:
             return self
         step = factor * self.step
         double_support = factor**self.double_support_exponent * self.double_support
-        return replace(self, step=step, double_support=min(double_support, MAX_DOUBLE_SUPPORT * step))
+        most = min(max(self.longest_double_support, self.double_support), MAX_DOUBLE_SUPPORT * step)
+        return replace(self, step=step, double_support=min(double_support, most))
 
     @property
     def single_support(self) -> float:

@@ -54,12 +54,20 @@ def test_a_walk_ratio_is_length_times_duration_up_to_the_longest_step(speed: flo
         assert speed * timing.step**2 <= 0.36 * (1.0 + 1e-12)
 
 
-@given(st.floats(0.3, 3.0), st.floats(0.0, 3.0))
-def test_double_support_follows_a_power_of_the_duration_of_the_step(factor: float, exponent: float) -> None:
-    timing = replace(TIMING, double_support_exponent=exponent)
-    stretched, most = timing.stretched(factor), MAX_DOUBLE_SUPPORT * factor * timing.step
+@given(st.floats(0.3, 3.0), st.floats(0.0, 3.0), st.floats(0.1, 1.0))
+def test_double_support_follows_a_power_of_the_duration_up_to_its_longest(
+    factor: float, exponent: float, longest: float
+) -> None:
+    timing = replace(TIMING, double_support_exponent=exponent, longest_double_support=longest)
+    stretched, share = timing.stretched(factor), MAX_DOUBLE_SUPPORT * factor * timing.step
     assert stretched.step == pytest.approx(factor * timing.step)
-    assert stretched.double_support == pytest.approx(min(factor**exponent * timing.double_support, most))
+    assert stretched.double_support == pytest.approx(min(factor**exponent * timing.double_support, longest, share))
+
+
+@given(st.floats(1.0, 3.0))
+def test_the_longest_double_support_does_not_shorten_a_longer_one_that_is_given(factor: float) -> None:
+    timing = replace(TIMING, double_support=0.3, longest_double_support=0.2)
+    assert timing.stretched(factor).double_support == pytest.approx(0.3)
 
 
 def test_double_support_is_a_longer_part_of_a_slower_walk() -> None:
