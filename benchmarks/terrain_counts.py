@@ -11,13 +11,12 @@ from studies import PUSH_IMPULSE, RESULTS, study_results, survival_texts, table
 
 from humanwalk.study.study import load_study
 
-DIRECTION = "terrain.course.pieces.0.stairs.direction"
 UNITS = {PUSH_IMPULSE: "{:g} N s"}
 """How numbers of a factor are written."""
 
 GROUNDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "terrain_edges": ("0.5 to 1.4 m ahead", ("ground",)),
-    "terrain_treads": ("stairs", (DIRECTION, "body")),
+    "terrain_treads": ("stairs up and down", ("body",)),
     "terrain_rough": ("boxes of ±5 cm", ()),
     "terrain_rough_blind": ("boxes of ±2 cm, blind", ()),
     "terrain_blind": ("blind", ("ground",)),
