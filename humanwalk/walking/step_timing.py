@@ -38,8 +38,9 @@ class StepTiming:
     people at 0.9 m/s and 19 % at 1.4 m/s."""
 
     longest_double_support: float = quantity(0.2, "s", 0.04, 1.0)
-    """Longest double support of a step that takes longer than `step`. Without this limit the walker fell on stairs up
-    with treads of 25 cm, whose steps take 0.9 s (docs/decisions/0055-slow-walks.md)."""
+    """Longest double support of a step that takes longer than `step`, unless `double_support` is longer. Without this
+    limit the walker fell on stairs up with treads of 25 cm, whose steps take 0.9 s
+    (docs/decisions/0055-slow-walks.md)."""
 
     weight_shift: float = quantity(1.0, "s", 0.3, 3.0)
     """From quiet standing onto the first stance foot."""
