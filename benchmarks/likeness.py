@@ -19,7 +19,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from humanwalk.measures.curves import JOINTS
-from humanwalk.measures.walk_measures import MEASURES, Pace
+from humanwalk.measures.human_ranges import Pace
+from humanwalk.measures.walk_measures import MEASURES
 from humanwalk.quantity import GRAVITY
 from humanwalk.study.row import likeness_columns
 from humanwalk.study.study import load_study

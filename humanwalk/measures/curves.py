@@ -28,6 +28,9 @@ JOINTS: dict[str, Callable[[Leg], str]] = {
 }
 """The sagittal joint of a leg by its name in ANGLES; positive in flexion and dorsiflexion."""
 
+TERMINAL_STANCE = (31.0, 50.0)
+"""From heel rise to touchdown of the other foot [% of the gait cycle]: Perry and Burnfield (2010), chapter 2."""
+
 
 def joint_signal(signals: pa.Table, joint: str, side: Side, quantity: str) -> Array:
     """A signal of one of JOINTS, shape (rows,): its angle_rad, velocity_rad_s or torque_N_m."""
@@ -137,3 +140,10 @@ def over_strides(foot: FootEvents, values: Array) -> Array:
     time = foot.time
     strides = [np.interp(time[a] + CYCLE / 100.0 * (time[b] - time[a]), time, values) for a, b in foot.strides]
     return np.array(strides).reshape(-1, CYCLE.size)
+
+
+def late_stance_knee(strides: Array) -> Array:
+    """Least knee flexion in terminal stance [deg], from knee flexion over strides, (strides, 101) -> (strides,)."""
+    begin, end = TERMINAL_STANCE
+    least: Array = strides[:, (begin <= CYCLE) & (end >= CYCLE)].min(axis=1)
+    return least

@@ -2,7 +2,7 @@
 
 People's curves are those of `humanwalk.gait.normative` at the dimensionless speed of the walk; their moments and powers
 are scaled to its leg length. Other measures have human values where a source is known
-(`humanwalk.measures.walk_measures`).
+(`humanwalk.measures.human_ranges`).
 """
 
 from collections.abc import Mapping, Sequence

@@ -3,7 +3,6 @@
 `MEASURES` is the list: report, studies and tunings show what it holds.
 """
 
-import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,11 +11,10 @@ from functools import cached_property, partial
 import numpy as np
 import pyarrow as pa
 
-from humanwalk.body import SIDES, Side, human
+from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
-from humanwalk.gait.normative import CYCLE, SpeedGroup, dimensionless_speed, speed_group
 from humanwalk.measures.center_of_pressure import backward_travels, cop_paths
-from humanwalk.measures.curves import ANGLES, CURVES, over_strides
+from humanwalk.measures.curves import CURVES, late_stance_knee, over_strides
 from humanwalk.measures.effort import cost_of_transport
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.gait_measures import (
@@ -29,62 +27,23 @@ from humanwalk.measures.gait_measures import (
     stride_times,
 )
 from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
+from humanwalk.measures.human_ranges import (
+    PERRY,
+    Pace,
+    People,
+    people_com_excursion,
+    people_double_support,
+    people_late_stance_knee,
+    people_speed,
+    people_stance,
+    people_step_width,
+    people_steps,
+)
 from humanwalk.measures.path import Directions, distance_along, path_directions
 from humanwalk.measures.signals import TIME, UNITS
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario
-
-TERMINAL_STANCE = (31.0, 50.0)
-"""From heel rise to touchdown of the other foot [% of the gait cycle]: Perry and Burnfield (2010), chapter 2."""
-
-PERRY = "Perry, Burnfield (2010), Gait Analysis"
-ORENDURFF = "Orendurff et al. (2004), JRRD 41(6A) 829"
-SCHWARTZ = "Schwartz et al. (2008)"
-SCHULZ = "Schulz (2012), J. Neuroeng. Rehabil. 9:69"
-KIRTLEY = "Kirtley, Whittle, Jefferson (1985), J. Biomed. Eng. 7(4) 282"
-
-WALK_RATIOS = (0.64 / 117.0, 0.73 / 111.0)
-"""Step length per cadence of women and of men at their own speed [m min]: Perry and Burnfield (2010).
-
-The walk ratio does not depend on speed above 1.03 m/s, and is greater below: Murakami, Otaka (2017), J. Phys. Ther.
-Sci. 29(4) 722.
-"""
-STANCE_SHARE = (0.642, -0.035, 0.02)
-"""Stance share extrapolated to rest, change per m/s: Kirtley et al. (1985). Standard deviation between people: 1.9 to
-2.5 % of the stride in the data at clinicalgaitanalysis.com/data/stance.html."""
-STEP_WIDTH = (0.140, 0.031)
-"""Mean and standard deviation at a free speed [leg lengths]: table 1 of Schulz (2012)."""
-
-COM_EXCURSIONS = {
-    "vertical": ((2.74e-2, 0.52e-2), (4.83e-2, 0.92e-2)),
-    "lateral": ((6.99e-2, 1.34e-2), (3.85e-2, 1.41e-2)),
-}
-COM_SPEEDS = (0.7, 1.6)
-"""Human mean and standard deviation at two speeds [m], and the speeds [m/s]; abstract of Orendurff et al. (2004)."""
-
-
-@dataclass(frozen=True)
-class Pace:
-    """How fast a body walks: what human ranges depend on.
-
-    Attributes:
-        speed: mean speed of the strides [m/s].
-        leg: leg length, the height of the hip joints in standing [m].
-    """
-
-    speed: float
-    leg: float
-
-    @property
-    def dimensionless(self) -> float:
-        """Speed over sqrt(g leg length)."""
-        return dimensionless_speed(self.speed, self.leg)
-
-    @property
-    def group(self) -> SpeedGroup:
-        """People who walk at this dimensionless speed."""
-        return speed_group(self.dimensionless)
 
 
 @dataclass(frozen=True)
@@ -150,15 +109,6 @@ class Walk:
 
 
 @dataclass(frozen=True)
-class People:
-    """Human range of a measure; for a mean with standard deviation, one standard deviation to either side."""
-
-    low: float
-    high: float
-    source: str
-
-
-@dataclass(frozen=True)
 class Measure:
     """A measure of a walk with its human range.
 
@@ -204,64 +154,12 @@ class MeasureKind:
         return re.sub(r"\W+", "_", self.name) + endings.get(self.unit, "")
 
 
-def late_stance_knee(strides: Array) -> Array:
-    """Least knee flexion in terminal stance [deg], from knee flexion over strides, (strides, 101) -> (strides,)."""
-    begin, end = TERMINAL_STANCE
-    least: Array = strides[:, (begin <= CYCLE) & (end >= CYCLE)].min(axis=1)
-    return least
-
-
 def com_excursions(signals: pa.Table, foot: FootEvents, axis: str) -> Array:
     """Range of the center of mass in every stride along y or z, measured from the straight line
     through the ends of the stride [m].
     """
     place = signals[f"com.{axis}_m"].to_numpy()
     return np.array([np.ptp(place[a : b + 1] - np.linspace(place[a], place[b], b + 1 - a)) for a, b in foot.strides])
-
-
-def people_com_excursion(direction: str, pace: Pace) -> People | None:
-    """Human range of the center of mass [m]; None outside of the two speeds of the source."""
-    if not COM_SPEEDS[0] <= pace.speed <= COM_SPEEDS[1]:
-        return None
-    mean, sd = (float(np.interp(pace.speed, COM_SPEEDS, ends)) for ends in zip(*COM_EXCURSIONS[direction], strict=True))
-    return People(mean - sd, mean + sd, f"{ORENDURFF}, at this speed")
-
-
-def people_steps(pace: Pace) -> tuple[People, People]:
-    """Human step length [m] and cadence [1/min].
-
-    With the walk ratio r, the length is sqrt(60 r speed), and the cadence 60 speed / length. Dynamically similar bodies
-    have walk ratios in proportion to the leg length to the power 1.5.
-    """
-    scale = (pace.leg / human().hip_height) ** 1.5
-    low, high = (math.sqrt(60.0 * scale * ratio * pace.speed) for ratio in WALK_RATIOS)
-    source = f"{PERRY}: walk ratio, from women's to men's, at this speed and leg length"
-    return People(low, high, source), People(60.0 * pace.speed / high, 60.0 * pace.speed / low, source)
-
-
-def people_stance(pace: Pace) -> People:
-    """Human share of stance."""
-    at_rest, slope, sd = STANCE_SHARE
-    mean = at_rest + slope * pace.speed
-    return People(mean - sd, mean + sd, f"{KIRTLEY}, at this speed")
-
-
-def people_double_support(pace: Pace) -> People:
-    """Human share of double support, of a symmetric gait."""
-    stance = people_stance(pace)
-    return People(2.0 * stance.low - 1.0, 2.0 * stance.high - 1.0, f"{KIRTLEY}: twice the stance minus the stride")
-
-
-def people_step_width(pace: Pace) -> People:
-    """Human step width [m]."""
-    mean, sd = STEP_WIDTH
-    return People((mean - sd) * pace.leg, (mean + sd) * pace.leg, SCHULZ)
-
-
-def _late_stance_knee_of_people(pace: Pace) -> People:
-    band = ANGLES["knee"].people(pace.group)
-    low, high = late_stance_knee(np.array([band.mean - band.sd, band.mean + band.sd]))
-    return People(float(low), float(high), SCHWARTZ)
 
 
 def _of_perry(value: float) -> Callable[[Pace], People]:
@@ -307,10 +205,8 @@ def _peak_moment(joint: str, sense: str, sign: int) -> MeasureKind:
     )
 
 
-_AT_FREE_SPEED = f"{PERRY}, women and men at their own speed"
-
 MEASURES: tuple[MeasureKind, ...] = (
-    MeasureKind("speed", "m/s", lambda walk: walk.speeds, lambda pace: People(1.28, 1.43, _AT_FREE_SPEED)),
+    MeasureKind("speed", "m/s", lambda walk: walk.speeds, people_speed),
     MeasureKind(
         "step length",
         "m",
@@ -355,7 +251,7 @@ MEASURES: tuple[MeasureKind, ...] = (
         "least knee flexion, terminal stance",
         "deg",
         lambda walk: late_stance_knee(walk.strides("knee")),
-        _late_stance_knee_of_people,
+        people_late_stance_knee,
     ),
     MeasureKind("cost of transport", "", _cost),
     _peak_moment("hip", "flexion", -1),

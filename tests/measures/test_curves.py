@@ -17,7 +17,8 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.body.markers import markers
 from humanwalk.body.pelvic_plane import PELVIC_TILT, plane_tilt
 from humanwalk.body.subject import Subject
-from humanwalk.measures.curves import ANGLES
+from humanwalk.gait.normative import CYCLE
+from humanwalk.measures.curves import ANGLES, late_stance_knee
 from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
 
 MASS = 70.0
@@ -125,3 +126,9 @@ def test_soles_are_oriented_as_in_the_plant(plant: MultibodyPlant, joints: Joint
         for side in SIDES:
             R_WS = plant.GetFrameByName(LEGS[side].sole).CalcPoseInWorld(context).rotation().matrix()
             np.testing.assert_allclose(sole_rotation(signals, side)[row].as_matrix(), R_WS, atol=1e-9)
+
+
+def test_late_stance_knee_is_the_least_of_terminal_stance() -> None:
+    curve = np.full(CYCLE.size, 40.0)
+    curve[[20, 40, 60]] = 1.0, 12.0, 2.0
+    assert late_stance_knee(curve[None]) == pytest.approx([12.0])

@@ -17,17 +17,7 @@ from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.ground_force import contact_lost, force_peaks, peak_counts, vertical_force
 from humanwalk.measures.human_likeness import SCORED, Likeness, compare, pooled
 from humanwalk.measures.signals import TIME, unit_of
-from humanwalk.measures.walk_measures import (
-    MEASURES,
-    Pace,
-    com_excursions,
-    late_stance_knee,
-    people_com_excursion,
-    people_double_support,
-    people_stance,
-    people_step_width,
-    people_steps,
-)
+from humanwalk.measures.walk_measures import MEASURES, com_excursions
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.scenario import Scenario, load_scenario
@@ -156,12 +146,6 @@ def test_strides_are_counted_one_by_one(walk: Callable[..., Any]) -> None:
     assert np.flatnonzero(bad).tolist() == [2]
 
 
-def test_late_stance_knee_is_the_least_of_terminal_stance() -> None:
-    curve = np.full(CYCLE.size, 40.0)
-    curve[[20, 40, 60]] = 1.0, 12.0, 2.0
-    assert late_stance_knee(curve[None]) == pytest.approx([12.0])
-
-
 def with_force(signals: pa.Table, change: Callable[..., Any]) -> pa.Table:
     """The record with a change of the right foot's vertical force [body weights], a function of force and time."""
     name = "right_foot.force_z_N"
@@ -206,39 +190,6 @@ def test_contact_that_a_bouncing_heel_loses_is_measured(walk: Callable[..., Any]
 def test_contact_that_a_dragging_toe_loses_is_not_after_heel_strike(walk: Callable[..., Any]) -> None:
     drag = with_force(walk(), lambda force, time: np.where((time % 1.0 > 0.55) & (time % 1.0 < 0.57), 0, force))
     assert contact_lost(drag, "Right", events_of(drag, "Right")) == pytest.approx(0.0)
-
-
-@pytest.mark.parametrize("speed", [0.9, 1.2, 1.4])
-@pytest.mark.parametrize("leg", [0.75, 0.95])
-def test_human_steps_have_the_speed_and_the_walk_ratio(speed: float, leg: float) -> None:
-    length, cadence = people_steps(Pace(speed, leg))
-    assert length.low < length.high
-    assert length.low * cadence.high / 60.0 == pytest.approx(speed)
-    assert length.high * cadence.low / 60.0 == pytest.approx(speed)
-
-
-@pytest.mark.parametrize("size", [0.6, 1.1])
-def test_steps_of_dynamically_similar_people_are_in_proportion(size: float) -> None:
-    pace, similar = Pace(1.2, 0.9), Pace(1.2 * size**0.5, 0.9 * size)
-    (length, cadence), (length_there, cadence_there) = people_steps(pace), people_steps(similar)
-    width, width_there = people_step_width(pace), people_step_width(similar)
-    for end in ("low", "high"):
-        assert getattr(length_there, end) == pytest.approx(size * getattr(length, end))
-        assert getattr(cadence_there, end) == pytest.approx(size**-0.5 * getattr(cadence, end))
-        assert getattr(width_there, end) == pytest.approx(size * getattr(width, end))
-
-
-def test_people_stand_on_both_feet_as_long_as_two_stances_exceed_a_stride() -> None:
-    stance, both = people_stance(Pace(1.2, LEG)), people_double_support(Pace(1.2, LEG))
-    assert (1.0 + both.low, 1.0 + both.high) == pytest.approx((2.0 * stance.low, 2.0 * stance.high))
-
-
-def test_human_stance_is_shorter_in_faster_walks() -> None:
-    slow, fast = people_stance(Pace(0.9, LEG)), people_stance(Pace(1.4, LEG))
-    assert fast.low < slow.low
-    # The 60 % of the textbooks.
-    textbook = people_stance(Pace(1.2, LEG))
-    assert textbook.low < 0.6 < textbook.high
 
 
 def test_columns_of_measures_are_unique_and_have_their_units() -> None:
@@ -297,16 +248,6 @@ def test_drift_is_no_excursion(walk: Callable[..., Any]) -> None:
     drifted = signals.drop_columns("com.y_m").append_column("com.y_m", [drifting])
     for record in (signals, drifted):
         assert com_excursions(record, events_of(record, "Right"), "y") == pytest.approx(0.04, rel=0.01)
-
-
-@pytest.mark.parametrize("direction", ["vertical", "lateral"])
-def test_human_excursion_is_given_between_the_speeds_of_the_source(direction: str) -> None:
-    assert people_com_excursion(direction, Pace(0.6, LEG)) is None
-    assert people_com_excursion(direction, Pace(1.7, LEG)) is None
-    slow, middle, fast = (people_com_excursion(direction, Pace(speed, LEG)) for speed in (0.7, 1.15, 1.6))
-    assert middle.low == pytest.approx((slow.low + fast.low) / 2)
-    # A faster walk rises more and sways less.
-    assert (fast.high > slow.high) == (direction == "vertical")
 
 
 @pytest.mark.parametrize(
