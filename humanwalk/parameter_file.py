@@ -3,7 +3,6 @@
 pydrake's typed loader assigns to fields, so it cannot make frozen dataclasses, and its messages span lines.
 """
 
-import copy
 import dataclasses
 import functools
 import math
@@ -11,95 +10,18 @@ import typing
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
-from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
-from humanwalk.yaml_text import MAX_DEPTH, index_of, line_of, read_yaml, shown, yaml_text
+from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, range_text, tag_of
+from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
 
 MAX_ENTRIES = 1000
 """Length of the longest list."""
-
-
-def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> None:
-    """Replace a value in the mapping of a dataclass of parameters by text; see `replace_value`.
-
-    Raises:
-        ParameterError: the text is not YAML, or the field cannot be replaced.
-    """
-    # Indented, so that no line of the text begins another field.
-    indented = "\n ".join(text.splitlines())
-    replace_value(kind, data, field, read_yaml(f"value: {indented}", f"--set {field}")["value"])
-
-
-def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> None:
-    """Replace a value in the mapping of a dataclass of parameters by its dotted field name.
-
-    Args:
-        kind: the dataclass.
-        data: the mapping; it is changed, its groups and lists are copied first. A choice may stand in it as its tag.
-        field: `controller.balanced.planner.dcm_gain`, or with the index of a list's entry `pushes.given.0.direction`;
-            the index after the last adds an entry.
-        value: as YAML has it; it is copied.
-
-    Raises:
-        ParameterError: the name leads into a value, into another choice, or beyond a list.
-    """
-    fields, parts = _named_fields(kind), field.split(".")
-    group: dict[str, Any] | list[Any] = data
-    for depth, (part, below) in enumerate(pairwise(parts), 1):
-        name = ".".join(parts[:depth])
-        of_list = fields.get(".".join(parts[: depth - 1]))
-        entry = of_list is not None and "choice_list" in of_list.metadata
-        group = _group_in(group, part, below, name, fields.get(name), entry)
-    if isinstance(group, list):
-        group[_index(group, parts[-1], field)] = copy.deepcopy(value)
-    else:
-        group[parts[-1]] = copy.deepcopy(value)
-
-
-def _group_in(
-    group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None, of_choices: bool
-) -> Any:
-    """The mapping or list at `part` of a group, made where there is none; `below` is the part of the name after it.
-
-    `of_choices` tells that the group is a list of choices.
-    """
-    key: Any = _index(group, part, name) if isinstance(group, list) else part
-    found = group[key] if isinstance(group, list) else group.get(key)
-    chosen = of_choices or (field is not None and "choices" in field.metadata)
-    if found is None or (chosen and found == below):
-        found = _default_list(field) if below.isdecimal() else {}
-    if isinstance(found, list) or (isinstance(found, dict) and not (chosen and next(iter(found), below) != below)):
-        group[key] = found = copy.copy(found)
-        return found
-    tag = next(iter(found)) if isinstance(found, dict) else found
-    raise ParameterError(
-        f"{name}.{below}: {name} is {shown(tag)}; allowed: fields of {shown(tag)}; choose another with "
-        f"--set {name}=... before"
-    )
-
-
-def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
-    """The entries that a list has where a file does not name it."""
-    plain = [] if field is None or field.default is dataclasses.MISSING else _plain(field.default)
-    return plain if isinstance(plain, list) else []
-
-
-def _index(entries: list[Any], part: str, name: str) -> int:
-    """Index of an entry that a part of a dotted name stands for; the one after the last is made."""
-    if (index := index_of(part)) is None or index > len(entries):
-        raise ParameterError(
-            f"{printable(name)}: no such entry; allowed: 0 to {len(entries)}; {len(entries)} adds an entry"
-        )
-    if index == len(entries):
-        entries.append(None)
-    return index
 
 
 @contextmanager
@@ -165,16 +87,17 @@ def build_value(value: Any, name: str) -> Any:
 
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
-    return yaml_text(_plain(parameters))
+    return yaml_text(plain_value(parameters))
 
 
 def plain(parameters: Any) -> dict[str, Any]:
     """A dataclass of parameters as a mapping, every field written out; `build` makes an equal one of it."""
-    entries: dict[str, Any] = _plain(parameters)
+    entries: dict[str, Any] = plain_value(parameters)
     return entries
 
 
-def _plain(value: Any) -> Any:
+def plain_value(value: Any) -> Any:
+    """A value of parameters as YAML has it: mappings, lists and scalars, every field written out."""
     if dataclasses.is_dataclass(value):
         entries: dict[str, Any] = {}
         for field in dataclasses.fields(value):
@@ -187,15 +110,15 @@ def _plain(value: Any) -> Any:
             elif "choice_list" in field.metadata:
                 entries[field.name] = [_tagged(field.metadata["choice_list"], chosen) for chosen in entry]
             else:
-                entries[field.name] = _plain(entry)
+                entries[field.name] = plain_value(entry)
         return entries
     if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items()}
-    return [_plain(entry) for entry in value] if isinstance(value, tuple | list) else value
+        return {key: plain_value(entry) for key, entry in value.items()}
+    return [plain_value(entry) for entry in value] if isinstance(value, tuple | list) else value
 
 
 def _tagged(choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
-    entry, only = _plain(value), only_field(type(value))
+    entry, only = plain_value(value), only_field(type(value))
     return {tag_of(choices, value): entry[only] if only else entry}
 
 
@@ -218,11 +141,6 @@ class _Place:
 def _hints(kind: type[Any]) -> dict[str, Any]:
     """Types of the fields of a dataclass; a study builds a hundred thousand scenarios."""
     return typing.get_type_hints(kind)
-
-
-@functools.cache
-def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
-    return dict(fields_of(kind))
 
 
 def _build(kind: Any, value: Any, place: _Place, default: Any = None) -> Any:

@@ -29,7 +29,8 @@ from humanwalk.choices import (
 from humanwalk.choices.start import StartParameters
 from humanwalk.files import read_text
 from humanwalk.notebook import html_table
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, override
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located
+from humanwalk.parameter_override import override
 from humanwalk.quantity import ParameterError, choice, printable, quantity, tag_of
 from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.terrain import TERRAINS, Plane, Terrain

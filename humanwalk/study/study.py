@@ -20,7 +20,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, rebuild, replace_value
+from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, rebuild
+from humanwalk.parameter_override import replace_value
 from humanwalk.quantity import ParameterError, choice, choices_by_name, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.shipped_files import named_file, shipped_files
