@@ -21,6 +21,7 @@ from humanwalk.walking.counter_rotation import foot_lead
 from humanwalk.walking.foot_placement import OUTWARD, foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover, swinging_foot
 from humanwalk.walking.footholds import Foothold
+from humanwalk.walking.height_planner import HeightPlanner, Touchdown
 from humanwalk.walking.lipm import backward, com_after, divergent_component, forward, natural_frequency
 from humanwalk.walking.motions import ScalarMotion, blend
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -32,7 +33,6 @@ from humanwalk.walking.swing_motion import SwingGoal, advanced_swing
 from humanwalk.walking.touch import standing_feet, touches
 from humanwalk.walking.walking_reference import BodyState, FootReference, FootTask, Phase, WalkingReference
 from humanwalk.walking.zmp_reference import (
-    descent_shares,
     desired_gaits,
     foothold_moves,
     pivot_lead,
@@ -80,10 +80,10 @@ class StepPlanner:
         self.parameters = p = parameters
         com_height = p.height.walking * standing_com_height
         self.frequency = natural_frequency(com_height)
-        self._standing_com_height, self._leg_length = standing_com_height, leg_length
         self._period, self._sole, self._ankle_height = period, sole, ankle_height
         self._passive_ankles = passive_ankles
         self._footholds = FootholdPlanner(sole, p.footholds, p.placement, p.pacing, com_height)
+        self._height = HeightPlanner(p, standing_com_height, leg_length, period)
         self._phases = PhaseTransitions(p, ankle_height, first_swing, ground, self._footholds, passive_ankles)
 
     def start(self, body: BodyState, heading: float = 0.0) -> PlannerState:
@@ -128,7 +128,7 @@ class StepPlanner:
             side: FootReference(FootTask.FLAT, 1.0, state.heading, state.foot(side).R_WS) for side in SIDES
         }
         support = support_motion(state, 0.0, self.frequency)
-        next_state, com_height = self._com_height(state, 0.0, math.inf, support)
+        next_state, com_height = self._height.advanced(state, support)
         next_state = next_state._replace(elapsed=state.elapsed + self._period)
         return next_state, self._reference(state, body, balance, com_height, support, feet, state.midpoint, 0.0)
 
@@ -167,10 +167,6 @@ class StepPlanner:
         heights = [state.stance_foot.ground, *(foothold.ground for foothold in preview.footholds)]
         rises = tuple(after - before for before, after in pairwise(heights))
         support = support_motion(state, dcm_shift(rises, following, self.frequency).real, self.frequency)
-        max_com_height = math.inf
-        if preview.footholds:
-            rolling = p.swing.rolling_share(state.stance_foot.step_to(preview.footholds[0]))
-            max_com_height = p.height.max_for_step(rises[0], rolling, self._standing_com_height)
 
         # Clock of the step and swinging foot: a foothold out of reach makes the clock run faster.
         foot, swing = state.local(body.foot(state.swing_side).position), state.swing
@@ -179,7 +175,7 @@ class StepPlanner:
             # If the old foot left before the new one carries the weight, the body would fall.
             limit = timing.double_support_rate_limit * body.load_share(state.stance)
             phase_rate = timing.phase_rate(excess, limit)
-            foothold = state.old_foot
+            foothold, touchdown = state.old_foot, None
             other_foot = foot_behind(state, command, p, state.swing_side in self._passive_ankles)
         else:
             reachable, excess = placement.within_reach(desired, state.stance, foot)
@@ -196,12 +192,12 @@ class StepPlanner:
             way = SwingGoal(goal, expected, remaining)
             swing = advanced_swing(state, swing, way, command, p, self._footholds, self._period)
             foothold = swing.foothold
-            max_com_height = min(max_com_height, self._max_com_height(state, foothold, com, support.after(remaining)))
+            touchdown = Touchdown(foothold, com, support.after(remaining))
             other_foot = swinging_foot(state, swing, phase_rate)
 
-        max_com_height += p.height.before_descent(descent_shares(state, p)[0], timing.step - state.elapsed)
         feet = {state.stance: stance_foot(state, swing, command, p), state.swing_side: other_foot}
-        next_state, com_height = self._com_height(state, command.forward, max_com_height, support)
+        highest = self._height.highest(state, touchdown)
+        next_state, com_height = self._height.advanced(state, support, command.forward, highest)
         elapsed, largest = state.elapsed + phase_rate * self._period, max(state.largest_error, abs(error))
         next_state = next_state._replace(elapsed=elapsed, swing=swing, largest_error=largest)
         balance = Balance(zmp, pivot, dcm, dcm_reference)
@@ -224,42 +220,6 @@ class StepPlanner:
         """The zero-moment point, limited to the base of support."""
         old = None if state.phase is Phase.SINGLE_SUPPORT else state.old_foot.position
         return self.parameters.support.clamp(zmp, state.stance_foot.position, state.heading, old, heel_is_up)
-
-    def _max_com_height(self, state: PlannerState, foothold: Foothold, com: complex, support: float) -> float:
-        """Largest height above the support [m] from which a foothold is within reach at touchdown.
-
-        Args:
-            state: State of the planner.
-            foothold: The foothold.
-            com, support: Center of mass and height of the support at touchdown [m].
-        """
-        reach = (foothold.position - com) / state.direction
-        height = self.parameters.height.max_com_height_for_reach(reach, self._leg_length, self._standing_com_height)
-        return height + foothold.ground - support
-
-    def _com_height(
-        self, state: PlannerState, forward_speed: float, max_height: float, support: SupportMotion
-    ) -> tuple[PlannerState, ScalarMotion]:
-        """The state with support and mean height one period later, and the reference of the center of mass in W.
-
-        The reference is the sum of the height of the support, the mean height and the arc over the stance leg.
-        """
-        law, period = self.parameters.height, self._period
-        if state.phase is Phase.STAND:
-            goal = law.standing * self._standing_com_height
-        else:
-            goal = law.mean(forward_speed, state.timing.step, self._standing_com_height)
-        acceleration = law.approach(state.height, state.height_rate, goal, max_height)
-        mean = ScalarMotion(state.height, state.height_rate, acceleration)
-        rate = state.height_rate + period * acceleration
-        moved = support.motion
-        next_state = state._replace(
-            height=state.height + period * rate,
-            height_rate=rate,
-            support=moved.value + period * (moved.rate + 0.5 * period * moved.acceleration),
-        )
-        arc = law.arc(state.elapsed, state.timing.step, forward_speed)
-        return next_state, moved.plus(mean).plus(arc)
 
     def _reference(
         self,
