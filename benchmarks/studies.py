@@ -268,6 +268,20 @@ def impairments() -> str:
     return _subjects("impairments", lambda row: row["subject"])
 
 
+def terrain_impairments() -> str:
+    def section(rows: list[Row]) -> str:
+        subjects, grounds = (list(dict.fromkeys(row[factor] for row in rows)) for factor in ("subject", "ground"))
+
+        def completed(subject: str, ground: str) -> str:
+            survived, _ = survival_texts([row for row in rows if (row["subject"], row["ground"]) == (subject, ground)])
+            return survived
+
+        lines = [[subject, *(completed(subject, ground) for ground in grounds)] for subject in subjects]
+        return table(["completed", *grounds], lines)
+
+    return study_section("terrain_impairments", section)
+
+
 def _subjects(name: str, group: Callable[[Row], str]) -> str:
     """Table of survival, speed and cost of transport, a line for each group of subjects."""
     study = load_study(name)
@@ -454,7 +468,14 @@ STUDIES: dict[str, tuple[Callable[[], str], ...]] = {
         balance_seeds,
         balance_invariance,
     ),
-    "howto/subjects.md": (subjects_adults, subjects_children, subjects_loads, impairments, subjects_pushes),
+    "howto/subjects.md": (
+        subjects_adults,
+        subjects_children,
+        subjects_loads,
+        impairments,
+        terrain_impairments,
+        subjects_pushes,
+    ),
     "likeness.md": (likeness, likeness_speeds, likeness_bodies, normative_seeds),
     "claims.md": (thesis_step_height,),
     "actuation.md": (actuations,),

@@ -67,6 +67,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_pushes", 80),
         ("terrain_bodies", 80),
         ("terrain_mixed", 90),
+        ("terrain_impairments", 160),
         ("terrain_turns", 36),
         ("terrain_commands", 40),
         ("terrain_stairs_pushes", 64),
@@ -100,10 +101,11 @@ def test_the_style_that_is_compared_with_people_is_that_of_the_scenario() -> Non
         assert replace(controller, command=shipped.command) == shipped
 
 
-def test_the_prosthesis_is_that_of_the_scenario() -> None:
-    study, shipped = load_study("impairments"), load_scenario("ankle_prosthesis")
+@pytest.mark.parametrize(("name", "number"), [("impairments", 10), ("terrain_impairments", 32)])
+def test_the_prosthesis_is_that_of_the_scenario(name: str, number: int) -> None:
+    study, shipped = load_study(name), load_scenario("ankle_prosthesis")
     walks = [study.scenario_at(point) for point in study.points if point["subject"] == "right ankle prosthesis"]
-    assert len(walks) == 10
+    assert len(walks) == number
     for walk in walks:
         assert walk.subject == shipped.subject
         assert replace(walk.controller, command=shipped.controller.command) == shipped.controller
