@@ -56,9 +56,15 @@ def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> No
 def _group_in(
     group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None, of_choices: bool
 ) -> Any:
-    """The mapping or list at `part` of a group, made where there is none; `below` is the part of the name after it.
+    """Return the mapping or list that stands at `part` of a group, and make it if there is none.
 
-    `of_choices` tells that the group is a list of choices.
+    Args:
+        group: Mapping or list; it is changed.
+        part: Part of the dotted name.
+        below: The next part of the name.
+        name: The dotted name up to `part`.
+        field: The field of that name, if it is one.
+        of_choices: Whether the group is a list of choices.
     """
     key: Any = _index(group, part, name) if isinstance(group, list) else part
     found = group[key] if isinstance(group, list) else group.get(key)
@@ -77,8 +83,10 @@ def _group_in(
 
 def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
     """The entries that a list has where a file does not name it."""
-    plain = [] if field is None or field.default is dataclasses.MISSING else plain_value(field.default)
-    return plain if isinstance(plain, list) else []
+    if field is None or field.default is dataclasses.MISSING:
+        return []
+    default = plain_value(field.default)
+    return default if isinstance(default, list) else []
 
 
 def _index(entries: list[Any], part: str, name: str) -> int:

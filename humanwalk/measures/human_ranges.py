@@ -78,7 +78,7 @@ def people_com_excursion(direction: str, pace: Pace) -> People | None:
 
 
 def people_speed(pace: Pace) -> People:
-    """Human speed at people's own choice [m/s]."""
+    """Human speed, as women and men choose it [m/s]; it does not depend on the pace."""
     return People(1.28, 1.43, f"{PERRY}, women and men at their own speed")
 
 
