@@ -21,8 +21,9 @@ class CarriedLoad:
     """
 
     def __init__(self, plant: MultibodyPlant, context: Context) -> None:
-        self._context, self._chest, self._load = context, plant.GetBodyByName(CHEST), NO_LOAD
-        self._unloaded = self._chest.default_spatial_inertia()
+        self._plant, self._context, self._load = plant, context, NO_LOAD
+        chest = plant.GetBodyByName(CHEST)
+        self._chest, self._unloaded = chest.index(), chest.default_spatial_inertia()
 
     @property
     def mass(self) -> float:
@@ -38,4 +39,4 @@ class CarriedLoad:
         if self.mass > 0.0:
             inertia = SpatialInertia.MakeFromCentralInertia(self.mass, load[1:], RotationalInertia(0.0, 0.0, 0.0))
             inertia += self._unloaded
-        self._chest.SetSpatialInertiaInBodyFrame(self._context, inertia)
+        self._plant.get_body(self._chest).SetSpatialInertiaInBodyFrame(self._context, inertia)

@@ -98,10 +98,9 @@ class BodyDynamics:
         self.mass = plant.CalcTotalMass(plant.CreateDefaultContext())
         self._context = plant.CreateDefaultContext()
         self._carried = CarriedLoad(plant, self._context)
-        self._world = plant.world_frame()
         self.bodies = (PELVIS, CHEST, *(body for leg in LEGS.values() for body in leg.foot_bodies))
         bodies = [plant.GetBodyByName(name) for name in self.bodies]
-        self._frames = [(body.body_frame(), int(body.index())) for body in bodies]
+        self._frames = [(body.body_frame().index(), int(body.index())) for body in bodies]
         self._damping = np.zeros(plant.num_velocities())
         for name, place in zip(self.joints.names, self.joints.v, strict=True):
             self._damping[place] = plant.GetJointByName(name).default_damping_vector()[0]
@@ -120,13 +119,14 @@ class BodyDynamics:
         """The body at a plant state [q; v], with a load on its chest (see `CarriedLoad`)."""
         self._carried.set(load)
         mass = self.mass + self._carried.mass
-        plant, context, world = self.plant, self._context, self._world
+        plant, context, world = self.plant, self._context, self.plant.world_frame()
         plant.SetPositionsAndVelocities(context, state)
         q, v = state[: plant.num_positions()], state[plant.num_positions() :]
         n = len(self._frames)
         X_WB, J, bias = np.empty((n, 3, 4)), np.empty((n, 6, v.size)), np.empty((n, 6))
         accelerations = plant.CalcSpatialAccelerationsFromVdot(context, self._no_acceleration)
-        for i, (frame, body) in enumerate(self._frames):
+        for i, (index, body) in enumerate(self._frames):
+            frame = plant.get_frame(index)
             X_WB[i] = frame.CalcPoseInWorld(context).GetAsMatrix34()
             J[i] = plant.CalcJacobianSpatialVelocity(context, BY_V, frame, ORIGIN, world, world)
             bias[i] = accelerations[body].get_coeffs()

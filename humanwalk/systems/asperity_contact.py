@@ -7,7 +7,8 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
-from pydrake.systems.framework import Context, EventStatus, LeafSystem, State, ValueProducer
+from pydrake.multibody.tree import RigidBody
+from pydrake.systems.framework import Context, EventStatus, LeafSystem, State
 
 from humanwalk.body import Side
 from humanwalk.body.contact import SolePatch
@@ -15,6 +16,7 @@ from humanwalk.contact.asperity import AsperityParameters
 from humanwalk.contact.contact_step import ContactMemory, ContactStep, body_jacobians, body_mobility, mobility_factor
 from humanwalk.contact.ground_force import FootForce, foot_force
 from humanwalk.numerics import Array
+from humanwalk.systems.abstract_output import declare_abstract_output
 from humanwalk.systems.foot_signals import declare_foot_signals
 from humanwalk.terrain import Terrain
 
@@ -28,6 +30,7 @@ class AsperityContact(LeafSystem):
         state: plant state [q; v].
 
     Outputs:
+        contacts: what ContactStep returns, a Contacts.
         spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
         foot_forces: (8 f) as of FootForceObserver.
         friction_use: (f) as of FootForceObserver.
@@ -56,17 +59,16 @@ class AsperityContact(LeafSystem):
         self._plant, self._plant_context = plant, plant.CreateDefaultContext()
         self._terrain, self._joint_impedance = terrain, joint_impedance
         patches = [patch for foot in feet.values() for patch in foot]
-        self._bodies = [plant.GetBodyByName(patch.body) for patch in patches]
-        self._frames, self._world = [body.body_frame() for body in self._bodies], plant.world_frame()
+        self._body_indices = [plant.GetBodyByName(patch.body).index() for patch in patches]
         # The origin comes first, so that one call returns it together with the points.
         self._points = [np.vstack((np.zeros(3), patch.p_BoQ_B)).T for patch in patches]
         area = np.array([patch.area for patch in patches])
         b, k = area.shape
         rank = int(np.linalg.matrix_rank(body_jacobians(plant, self._plant_context, self._bodies)))
         self._contact_step = ContactStep(parameters, terrain, area, plant.time_step())
-        self._forces = [ExternallyAppliedSpatialForce() for _ in self._bodies]
-        for force, body in zip(self._forces, self._bodies, strict=True):
-            force.body_index = body.index()
+        self._forces = [ExternallyAppliedSpatialForce() for _ in patches]
+        for force, index in zip(self._forces, self._body_indices, strict=True):
+            force.body_index = index
         ends = k * np.cumsum([0, *map(len, feet.values())])
         self._points_of_feet = [slice(*ends) for ends in pairwise(ends)]
 
@@ -80,25 +82,23 @@ class AsperityContact(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(plant.time_step(), 0.0, self._update_memory)
         self.DeclarePeriodicUnrestrictedUpdateEvent(parameters.mobility_period, 0.0, self._update_mobility)
 
-        self._contacts = self.DeclareCacheEntry(
-            "contacts", ValueProducer(lambda: Value[object](), self._calc_contacts), {self.all_sources_ticket()}
-        )
-        self.DeclareAbstractOutputPort(
-            "spatial_forces",
-            lambda: Value([ExternallyAppliedSpatialForce()]),
-            self._calc_forces,
-            {self._contacts.ticket()},
-        )
-        self.signals = declare_foot_signals(self, tuple(feet), self._calc_feet, self._contacts.ticket())
+        self._contacts = declare_abstract_output(self, "contacts", Value[object](), self._calc_contacts)
+        forces = Value([ExternallyAppliedSpatialForce()])
+        declare_abstract_output(self, "spatial_forces", forces, self._calc_forces)
+        self.signals = declare_foot_signals(self, tuple(feet), self._calc_feet)
+
+    @property
+    def _bodies(self) -> list[RigidBody]:
+        return [self._plant.get_body(index) for index in self._body_indices]
 
     def _kinematics(self, context: Context) -> tuple[Array, Array, Array]:
         """Origins of the bodies (b, 3), their points (b k, 3) and their velocities (6 b) in W."""
-        inner = self._plant_context
-        self._plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
-        bodies = zip(self._frames, self._points, strict=True)
-        points = [self._plant.CalcPointsPositions(inner, frame, p_BQ, self._world).T for frame, p_BQ in bodies]
-        p_W = np.array(points)
-        V = np.concatenate([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in self._bodies])
+        plant, inner, bodies = self._plant, self._plant_context, self._bodies
+        plant.SetPositionsAndVelocities(inner, self._state.Eval(context))
+        frames, world = [body.body_frame() for body in bodies], plant.world_frame()
+        points = zip(frames, self._points, strict=True)
+        p_W = np.array([plant.CalcPointsPositions(inner, frame, p_BQ, world).T for frame, p_BQ in points])
+        V = np.concatenate([body.EvalSpatialVelocityInWorld(inner).get_coeffs() for body in bodies])
         return p_W[:, 0], p_W[:, 1:].reshape(-1, 3), V
 
     def _calc_contacts(self, context: Context, output: Value) -> None:

@@ -37,8 +37,8 @@ class BodyObserver(LeafSystem):
         self._plant = plant
         self._plant_context = plant.CreateDefaultContext()
         self._carried = CarriedLoad(plant, self._plant_context)
-        self._soles = [plant.GetFrameByName(LEGS[side].sole) for side in SIDES]
-        self._ankles = [plant.GetFrameByName(LEGS[side].hindfoot) for side in SIDES]
+        self._soles = [plant.GetFrameByName(LEGS[side].sole).index() for side in SIDES]
+        self._ankles = [plant.GetFrameByName(LEGS[side].hindfoot).index() for side in SIDES]
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._load = self.DeclareVectorInputPort("load", NO_LOAD.size)
         soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
@@ -59,7 +59,8 @@ class BodyObserver(LeafSystem):
 
     def _calc_soles(self, context: Context, output: BasicVector) -> None:
         body = self._body_at(context)
-        output.SetFromVector(np.concatenate([sole.CalcPoseInWorld(body).translation() for sole in self._soles]))
+        soles = map(self._plant.get_frame, self._soles)
+        output.SetFromVector(np.concatenate([sole.CalcPoseInWorld(body).translation() for sole in soles]))
 
     def _calc_com(self, context: Context, output: BasicVector) -> None:
         body = self._body_at(context)
@@ -70,7 +71,7 @@ class BodyObserver(LeafSystem):
     def _calc_ankles(self, context: Context, output: BasicVector) -> None:
         body = self._body_at(context)
         parts: list[Array] = []
-        for ankle in self._ankles:
+        for ankle in map(self._plant.get_frame, self._ankles):
             X_WF, V_WF = ankle.CalcPoseInWorld(body), ankle.CalcSpatialVelocityInWorld(body)
             parts += (
                 X_WF.translation(),

@@ -54,8 +54,7 @@ class FootForceObserver(LeafSystem):
             if (body := plant.GetBodyFromFrameId(inspector.GetFrameId(geometry))) is not None
         }
         self._contacts = self.DeclareAbstractInputPort("contact_results", Value(ContactResults()))
-        ticket = self.input_port_ticket(self._contacts.get_index())
-        self.signals = declare_foot_signals(self, SIDES, self._calc_feet, ticket)
+        self.signals = declare_foot_signals(self, SIDES, self._calc_feet)
 
     def _calc_feet(self, context: Context) -> list[FootForce]:
         results = self._contacts.Eval(context)

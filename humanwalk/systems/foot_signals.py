@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from pydrake.common.value import Value
-from pydrake.systems.framework import BasicVector, Context, DependencyTicket, LeafSystem, ValueProducer
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from humanwalk.body import Side
 from humanwalk.contact.ground_force import FootForce
@@ -18,7 +17,6 @@ def declare_foot_signals(
     system: LeafSystem,
     sides: Sequence[Side],
     calculate: Callable[[Context], Sequence[FootForce]],
-    ticket: DependencyTicket,
 ) -> tuple[Signal, Signal]:
     """Declare the outputs `foot_forces` (8 per foot) and `friction_use` (1 per foot) of a system.
 
@@ -26,25 +24,19 @@ def declare_foot_signals(
         system: The system.
         sides: Sides of its feet.
         calculate: Ground reaction on each of these feet.
-        ticket: What they depend on.
 
     Returns:
         The signals of both outputs.
     """
-    feet = system.DeclareCacheEntry(
-        "feet",
-        ValueProducer(lambda: Value[object](), lambda context, value: value.set_value(calculate(context))),
-        {ticket},
-    )
 
     def calc_forces(context: Context, output: BasicVector) -> None:
-        output.SetFromVector(np.concatenate([foot.vector for foot in feet.Eval(context)]))
+        output.SetFromVector(np.concatenate([foot.vector for foot in calculate(context)]))
 
     def calc_friction_use(context: Context, output: BasicVector) -> None:
-        output.SetFromVector(np.array([foot.friction_use for foot in feet.Eval(context)]))
+        output.SetFromVector(np.array([foot.friction_use for foot in calculate(context)]))
 
-    forces = system.DeclareVectorOutputPort("foot_forces", 8 * len(sides), calc_forces, {feet.ticket()})
-    friction_use = system.DeclareVectorOutputPort("friction_use", len(sides), calc_friction_use, {feet.ticket()})
+    forces = system.DeclareVectorOutputPort("foot_forces", 8 * len(sides), calc_forces)
+    friction_use = system.DeclareVectorOutputPort("friction_use", len(sides), calc_friction_use)
     names = [f"{side.lower()}_foot" for side in sides]
     return (
         Signal("foot_forces", forces, tuple(f"{name}.{column}" for name in names for column in COLUMNS)),

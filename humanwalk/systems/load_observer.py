@@ -46,7 +46,7 @@ class LoadObserver(LeafSystem):
         self._plant, self._plant_context = plant, plant.CreateDefaultContext()
         self._mass = plant.CalcTotalMass(self._plant_context)
         self._gravity = -float(plant.gravity_field().gravity_vector()[2])
-        self._chest = plant.GetFrameByName(CHEST)
+        self._chest = plant.GetFrameByName(CHEST).index()
         self._feeling, self._period = feeling, period
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._foot_forces = self.DeclareVectorInputPort("foot_forces", 16)
@@ -62,7 +62,7 @@ class LoadObserver(LeafSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> EventStatus:
         com, momentum = self._body(context)
-        X_WC = self._chest.CalcPoseInWorld(self._plant_context)
+        X_WC = self._plant.get_frame(self._chest).CalcPoseInWorld(self._plant_context)
         forward = X_WC.rotation().col(0)
         R_WH = yaw_pitch(math.atan2(forward[1], forward[0]), 0.0)
 

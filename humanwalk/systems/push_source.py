@@ -11,6 +11,7 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import AbstractParameterIndex, BasicVector, Context, LeafSystem
 
 from humanwalk.quantity import ParameterError, did_you_mean
+from humanwalk.systems.abstract_output import declare_abstract_output
 from humanwalk.systems.signal import Signal, xyz
 from humanwalk.walking.push import Push, PushParameters, all_pushes
 
@@ -48,12 +49,8 @@ class PushSource(LeafSystem):
         pushes = Value(self._checked(all_pushes(parameters, seed)))
         self._pushes = AbstractParameterIndex(self.DeclareAbstractParameter(pushes))
         needs = {self.time_ticket(), self.abstract_parameter_ticket(self._pushes)}
-        self.DeclareAbstractOutputPort(
-            "spatial_forces",
-            lambda: Value([ExternallyAppliedSpatialForce()]),
-            self._calc_spatial_forces,
-            prerequisites_of_calc=needs,
-        )
+        forces = Value([ExternallyAppliedSpatialForce()])
+        declare_abstract_output(self, "spatial_forces", forces, self._calc_spatial_forces, needs)
         force = self.DeclareVectorOutputPort("force", 3, self._calc_force, prerequisites_of_calc=needs)
         self.signals = (Signal("push", force, xyz("push.force_", "N")),)
 

@@ -92,7 +92,7 @@ def test_ports() -> None:
     contact = Block().contact
     ports = [contact.get_output_port(i) for i in range(contact.num_output_ports())]
     sizes = {port.get_name(): port.size() for port in ports}
-    assert sizes == {"spatial_forces": 0, "foot_forces": 8, "friction_use": 1}
+    assert sizes == {"contacts": 0, "spatial_forces": 0, "foot_forces": 8, "friction_use": 1}
     assert all(name in AsperityContact.__doc__ for name in sizes)  # type: ignore[operator]
     assert contact.num_input_ports() == 1
     assert contact.GetInputPort("state").size() == 13
