@@ -15,6 +15,7 @@ UNITS = {PUSH_IMPULSE: "{:g} N s"}
 """How numbers of a factor are written."""
 
 GROUNDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "terrain": ("", ("ground",)),
     "terrain_edges": ("0.5 to 1.4 m ahead", ("ground",)),
     "terrain_treads": ("stairs up and down", ("body",)),
     "terrain_rough": ("boxes of ±5 cm", ()),
