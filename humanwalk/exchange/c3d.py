@@ -87,8 +87,7 @@ def _c3d(ezc3d: ModuleType, run: Run) -> Any:
 
 def _channels(load: GroundForce) -> Array:
     """Force [N] and moment about W's origin [N mm] on the foot, in the plate's frame; shape (6, rows)."""
-    moment = np.cross(load.point, load.force)
-    moment[:, 2] += load.free_moment
+    moment = np.cross(load.point, load.force) + load.free_moment
     return np.vstack((R_WF.T @ load.force.T, 1000.0 * R_WF.T @ moment.T))
 
 

@@ -23,7 +23,8 @@ class GroundForce:
         point: Center of pressure [m], shape (rows, 3). While the foot is unloaded it is interpolated linearly from
             toe-off to touchdown, and constant before the first and after the last contact, so that filters and splines
             of other programs see no jump.
-        free_moment: Moment about the vertical through `point` [N m], shape (rows,); zero while unloaded.
+        free_moment: Moment about the normal of the ground through `point`, in W [N m], shape (rows, 3); zero while
+            unloaded.
     """
 
     force: Array
@@ -70,7 +71,9 @@ def ground_force(run: Run, side: Side) -> GroundForce:
         for i, axis in enumerate("xyz"):
             cop = signals[f"{foot}.cop_{axis}_m"].to_numpy()
             point[:, i] = np.interp(time, time[loaded], cop[loaded])
-    return GroundForce(force, point, signals[f"{foot}.free_moment_N_m"].to_numpy() * loaded)
+    normal = run.scenario.terrain.axes(point[:, :2])[:, 2]
+    moment = signals[f"{foot}.free_moment_N_m"].to_numpy() * loaded
+    return GroundForce(force, point, moment[:, None] * normal)
 
 
 def ground_forces(run: Run) -> dict[Side, GroundForce]:

@@ -105,8 +105,11 @@ def external_loads(run: Run) -> MotionTable:
     columns: dict[str, Array] = {}
     for side, load in ground_forces(run).items():
         letter = side[0].lower()
-        torque = np.outer(load.free_moment, (0.0, 0.0, 1.0))
-        vectors = {f"force_{letter}_v": load.force, f"force_{letter}_p": load.point, f"torque_{letter}_": torque}
+        vectors = {
+            f"force_{letter}_v": load.force,
+            f"force_{letter}_p": load.point,
+            f"torque_{letter}_": load.free_moment,
+        }
         for name, vector in vectors.items():
             columns |= zip([f"ground_{name}{axis}" for axis in "xyz"], (vector @ R_OW.T).T, strict=True)
     return _table(run, columns, in_degrees=False)

@@ -43,8 +43,9 @@ MAX_DCM_ERROR = 0.3
 It is up to 0.05 m in undisturbed walking and up to 0.27 m after survived pushes of 60 N s; in falls it is above 0.5 m.
 """
 
-FAILURES_IN_A_ROW = 3.0
-"""QP failures in a row after which the controller has dropped its torques: `whole_body.hold` over the period."""
+FAILURES_IN_A_ROW = 4.0
+"""QP failures in a row at which the controller has dropped its torques: four control periods of 6 ms are the first that
+are longer than `whole_body.hold`, 20 ms."""
 
 UNKNOWN = "unknown"
 

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import math
 import os
 import shutil
 from collections.abc import Iterator
@@ -228,9 +229,10 @@ def require_room(folder: Path, scenario: Scenario) -> None:
     """Raise ParameterError, before the simulation, unless the disk has room for the run."""
     rows = scenario.duration / scenario.recording.signal_period
     if rows + 1 > MAX_ROWS:
+        least = math.ceil(1e4 * scenario.duration / (MAX_ROWS - 1)) / 1e4
         raise ParameterError(
             f"recording.signal_period: {rows:.0f} rows in {scenario.duration:g} s; allowed: up to {MAX_ROWS}; "
-            f"set it to {scenario.duration / MAX_ROWS:.3g} s or more, or walk shorter"
+            f"set it to {least:g} s or more, or walk shorter"
         )
     frames = scenario.duration * scenario.recording.frame_rate
     needed = SIGNALS_BYTES_PER_ROW * rows + REPLAY_BYTES_PER_FRAME * frames + OTHER_BYTES

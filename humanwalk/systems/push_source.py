@@ -75,7 +75,8 @@ class PushSource(LeafSystem):
                     f"pushes.body: {push.body}: no such body; allowed: the {len(names)} bodies of the model"
                     f"{did_you_mean(push.body, names)}"
                 )
-        return Pushes(tuple(pushes))
+        step = self._plant.time_step()
+        return Pushes(tuple(push.in_steps(step) for push in pushes) if step > 0.0 else tuple(pushes))
 
     def _active(self, context: Context) -> list[Push]:
         return [push for push in self.pushes(context) if push.is_active(context.get_time())]

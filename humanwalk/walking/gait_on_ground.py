@@ -13,8 +13,7 @@ it here is 0 on level ground:
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping
-from itertools import count, islice
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -194,8 +193,9 @@ class GaitOnGround(WalkingGait):
         self._search, self._law = search or FootholdSearch(), law or ClearanceParameters()
         self._ankle_height = skeleton.hip_height - skeleton.leg_length
         self._hip_height = skeleton.hip_height - parameters.offset
-        self._footholds: list[Mapping[Side, Foothold]] = []
-        self._making = self._make_steps()
+        self._footholds: list[Mapping[Side, Foothold]] = [
+            {side: Foothold.on(ground, self._place(side, 0)) for side in SIDES}
+        ]
         self._swings: dict[tuple[Side, int], PlacedSwing] = {}
         self._splines: dict[int, CubicHermite] = {}
 
@@ -205,7 +205,10 @@ class GaitOnGround(WalkingGait):
         Raises:
             ParameterError: there is no foothold for one of these steps.
         """
-        self._footholds += islice(self._making, max(step + 1 - len(self._footholds), 0))
+        for k in range(len(self._footholds), step + 1):
+            feet, side = self._footholds[-1], self._stepping(k)
+            goal = self._next_foothold(side, k, feet[other_side(side)].ground)
+            self._footholds.append({**feet, side: goal})
         return self._footholds[step]
 
     def pelvis(self, t: float) -> PelvisTarget:
@@ -239,14 +242,6 @@ class GaitOnGround(WalkingGait):
         u = 1.0 + distance / step - before
         values = (float(self._splines[before].derivative(u, order)[0]) / step**order for order in range(3))
         return ScalarMotion(*values)
-
-    def _make_steps(self) -> Iterator[Mapping[Side, Foothold]]:
-        """Footholds of both feet, step by step."""
-        feet = {side: Foothold.on(self._ground, self._place(side, 0)) for side in SIDES}
-        for k in count():
-            yield feet
-            side = self._stepping(k + 1)
-            feet = {**feet, side: self._next_foothold(side, k + 1, feet[other_side(side)].ground)}
 
     def _next_foothold(self, side: Side, k: int, level: float) -> Foothold:
         place, sole, p = self._place(side, k), self._sole, self.parameters

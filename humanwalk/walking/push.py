@@ -1,7 +1,7 @@
 """Pushes of the body as data."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from humanwalk.quantity import ParameterError, quantity
 
 RANDOM_PUSHES = 5
 """Stream of the seed from which random pushes are drawn."""
+
+ROUNDING = 1e-9
+"""Error of simulated times [s], which are sums of steps: a push does not act a step longer by it."""
 
 MIN_RANDOM_INTERVAL = 0.1
 """Smallest mean time between random pushes [s]: the duration of a push."""
@@ -23,7 +26,7 @@ class Push:
     """When the force begins."""
 
     duration: float = quantity(0.1, "s", 0.001, 60.0)
-    """How long it lasts."""
+    """How long it lasts, in whole steps of physics: rounded to the nearest number of them, at least one."""
 
     impulse: float = quantity(30.0, "N s", 0.0, 1000.0)
     """Force times duration."""
@@ -40,9 +43,13 @@ class Push:
         size = self.impulse / self.duration
         return (size * math.cos(self.direction), size * math.sin(self.direction), 0.0)
 
+    def in_steps(self, step: float) -> "Push":
+        """The push with the same impulse that lasts a whole number of steps [s], at least one."""
+        return replace(self, duration=max(round(self.duration / step), 1) * step)
+
     def is_active(self, time: float) -> bool:
         """Whether the force acts at a time [s]."""
-        return self.time <= time < self.time + self.duration
+        return -ROUNDING <= time - self.time < self.duration - ROUNDING
 
 
 @dataclass(frozen=True)

@@ -291,6 +291,14 @@ def test_longer_run_needs_more_room(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         require_room(tmp_path, load_scenario("thesis", {"duration": "700"}))
 
 
+@pytest.mark.parametrize("duration", ["2500", "3000", "3600"])
+def test_the_sampling_period_that_a_long_run_is_offered_fits(duration: str, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"set it to 0\.01\d+ s or more") as error:
+        require_room(tmp_path, load_scenario("walk", {"duration": duration}))
+    offered = str(error.value).partition("set it to ")[2].split()[0]
+    require_room(tmp_path, load_scenario("walk", {"duration": duration, "recording.signal_period": offered}))
+
+
 LIMIT = (
     "import resource, signal, sys;"
     "signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"

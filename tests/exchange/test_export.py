@@ -3,6 +3,7 @@
 import csv
 import shutil
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,9 @@ from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SIGNALS, Run
+from humanwalk.run.outcome import Outcome
 from humanwalk.sides import Side
+from humanwalk.terrain import Plane
 
 
 def read_storage(path: Path) -> tuple[dict[str, str], dict[str, Array]]:
@@ -184,7 +187,9 @@ def test_ground_force_on_a_loaded_foot_is_the_recorded_one(run: Run) -> None:
     for found, name in ((load.force, "force_*_N"), (load.point, "cop_*_m")):
         recorded = matrix(run.signals, [f"{foot}.{name.replace('*', axis)}" for axis in "xyz"])
         np.testing.assert_array_equal(found[loaded], recorded[loaded])
-    np.testing.assert_array_equal(load.free_moment[loaded], run.signals[f"{foot}.free_moment_N_m"].to_numpy()[loaded])
+    np.testing.assert_array_equal(
+        load.free_moment[loaded, 2], run.signals[f"{foot}.free_moment_N_m"].to_numpy()[loaded]
+    )
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -206,6 +211,14 @@ def test_point_of_an_unloaded_foot_is_interpolated_to_touchdown(run: Run) -> Non
     assert not ground_force(run, "Left").point.any()
 
 
+def test_the_free_moment_is_about_the_normal_of_the_ground(run: Run, tmp_path: Path) -> None:
+    scenario = replace(run.scenario, terrain=Plane(slope=0.3))
+    sloped = Outcome(scenario, run.signals, "completed", 1.0).write(tmp_path, "made up")
+    recorded = run.signals["right_foot.free_moment_N_m"].to_numpy()
+    normal = (-np.sin(0.3), 0.0, np.cos(0.3))
+    np.testing.assert_allclose(ground_force(sloped, "Right").free_moment, np.outer(recorded, normal), atol=1e-12)
+
+
 def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder: Path, run: Run) -> None:
     """The moment about the origin, which must not depend on how it is written."""
     _, columns = read_storage(opensim_folder / "ground_forces.mot")
@@ -218,7 +231,7 @@ def test_external_loads_carry_the_wrench_of_each_foot(opensim_folder: Path, run:
         )
         load = ground_force(run, side)
         np.testing.assert_allclose(force, load.force, atol=1e-8)
-        expected = np.cross(load.point, load.force) + np.outer(load.free_moment, [0, 0, 1])
+        expected = np.cross(load.point, load.force) + load.free_moment
         np.testing.assert_allclose(np.cross(point, force) + torque, expected, atol=1e-8)
 
 

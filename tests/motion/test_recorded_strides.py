@@ -41,6 +41,24 @@ def test_speed_and_step_are_those_of_the_recording() -> None:
     assert gait.curves.lowest_speed == gait.speed
 
 
+def test_standing_before_and_after_the_walk_is_not_counted() -> None:
+    walk = recording()
+    time = np.concatenate((walk.time, walk.time[-1] + 0.01 + walk.time, 2.0 * walk.time[-1] + 0.02 + walk.time))
+    angles = np.concatenate(
+        (np.tile(walk.angles[0], (walk.time.size, 1)), walk.angles, np.tile(walk.angles[-1], (walk.time.size, 1)))
+    )
+    path = np.concatenate(
+        [
+            np.tile(walk.pelvis_position[0], (walk.time.size, 1)),
+            walk.pelvis_position,
+            np.tile(walk.pelvis_position[-1], (walk.time.size, 1)),
+        ]
+    )
+    gait = recorded_gait(RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0), SUBJECT, "trial")
+    assert gait.speed == pytest.approx(SPEED, abs=0.01)
+    assert gait.step == pytest.approx(STEP, abs=0.01)
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_the_mean_stride_begins_at_touchdown(side: Side) -> None:
     """People's foot is farthest ahead of the pelvis 2 to 3 % of the cycle before touchdown."""

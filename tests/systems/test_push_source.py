@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
+from pydrake.multibody.tree import SpatialInertia
 
 from humanwalk.body.limbs import CHEST
 from humanwalk.numerics import Array
@@ -93,3 +94,24 @@ def test_random_pushes_do_not_depend_on_the_noise_of_the_start() -> None:
     noise = np.abs([np.random.default_rng(seed).standard_normal(2) for seed in seeds]).T
     correlations = np.corrcoef([*noise, [push.time for push in first], [push.impulse for push in first]])
     assert np.abs(correlations[:2, 2:]).max() < 0.08
+
+
+@given(
+    st.integers(0, 20_000), st.floats(0.0, 0.99), st.floats(0.001, 1.0), st.sampled_from([0.0005, 0.001, 0.002, 0.003])
+)
+def test_the_steps_of_physics_sum_up_to_the_impulse(begin: int, within: float, duration: float, step: float) -> None:
+    """Times and durations need be no multiple of the step; a step longer or shorter would be 2 % of a push of 0.1 s."""
+    push = Push(round(begin * step, 9) + within * step, duration, impulse=30.0).in_steps(step)
+    forces = [push.force[0] for k in range(begin, begin + math.ceil(duration / step) + 3) if push.is_active(k * step)]
+    assert step * sum(forces) == pytest.approx(30.0)
+    assert push.duration == pytest.approx(duration, abs=max(0.5 * step, step - duration) + 1e-9)
+
+
+def test_a_push_lasts_whole_steps_of_a_discrete_plant() -> None:
+    plant = MultibodyPlant(0.002)
+    plant.AddRigidBody(CHEST, SpatialInertia.SolidSphereWithMass(1.0, 0.1))
+    plant.Finalize()
+    source = PushSource(plant, PushParameters((Push(1.0, 0.0251),)), seed=0)
+    (push,) = source.pushes(source.CreateDefaultContext())
+    assert push.duration == pytest.approx(0.026)
+    assert push.impulse == 30.0

@@ -186,6 +186,16 @@ def test_on_stairs_the_heel_rises_about_the_toes_before_lift_off(direction: str,
     assert (pitches[0], pitches[-1]) == pytest.approx((0.0, np.arctan2(RISE, TREAD)), abs=0.02)
 
 
+def test_a_step_that_does_not_fit_the_treads_is_rejected_whenever_it_is_asked_for(skeleton: Skeleton) -> None:
+    walk = walk_on(FLIGHT["up"], skeleton, FootPathParameters())
+    messages = []
+    for _ in range(2):
+        with pytest.raises(ParameterError, match="has no foothold for step") as error:
+            walk.footholds(40)
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
 def test_a_step_that_does_not_fit_the_treads_is_rejected_with_the_one_that_does(skeleton: Skeleton) -> None:
     walk = walk_on(FLIGHT["up"], skeleton, FootPathParameters())
     with pytest.raises(ParameterError, match=r"step_length: 0\.5 has no foothold for step \d.*set it to 1\.2 times"):
