@@ -1,4 +1,4 @@
-# Every target first creates .venv with the packages of requirements.lock.
+# Every target that runs Python first creates .venv with the packages of requirements.lock.
 .DEFAULT_GOAL := help
 .PHONY: help walk test coverage fuzz lint docs gallery lock clean
 
