@@ -118,7 +118,8 @@ class AdaptiveActuation(PdActuation, AdaptationParameters):
 
     def add_correction(self, world: World) -> None:
         plant, kp, kd, own = world.plant, world.kp, world.kd, scaled(self, world.subject.scale)
-        inertia = base_first_mass_matrix(plant, plant.CreateDefaultContext()).diagonal()[-kp.size :]
+        neutral = body_plant(world.subject)
+        inertia = base_first_mass_matrix(neutral, neutral.CreateDefaultContext()).diagonal()[-kp.size :]
         require_passive(kd, inertia, kp > 0, own.error_rate)
         # At a constant acceleration the adaptation is integral action, to which inertia and load each add up to kp / T.
         require_stable_integral(

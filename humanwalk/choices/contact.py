@@ -113,13 +113,17 @@ class AsperityContactModel(_DrakeContact, AsperityParameters):
         self._observe_legs(world)
 
     def _require_stable(self, world: World) -> None:
-        """Raise ParameterError if the contact would diverge at the plant's step under a body in neutral standing."""
+        """Raise ParameterError if the contact would diverge at the plant's step under the body at its start."""
         plant, context = world.plant, world.plant.CreateDefaultContext()
         patches = [patch for side in SIDES for patch in sole_patches(world.subject.skeleton, side)]
-        J = body_jacobians(plant, context, [plant.GetBodyByName(patch.body) for patch in patches])
+        bodies = [plant.GetBodyByName(patch.body) for patch in patches]
+        J = body_jacobians(plant, context, bodies)
+        turned = [
+            body.EvalPoseInWorld(context).rotation() @ patch.p_BoQ_B.T
+            for body, patch in zip(bodies, patches, strict=True)
+        ]
         R_SW = world.terrain.axes(np.zeros(2))
-        # In neutral standing every body of the feet is parallel to the world.
-        r, area = np.array([patch.p_BoQ_B for patch in patches]), np.array([patch.area for patch in patches])
+        r, area = np.swapaxes(turned, 1, 2), np.array([patch.area for patch in patches])
         stable = largest_contact_step(
             plant.CalcMassMatrix(context),
             J,

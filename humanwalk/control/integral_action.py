@@ -68,7 +68,7 @@ def require_stable_integral(
     gain: float = 1.0,
     rate_time: float = 0.0,
 ) -> None:
-    """Raise ParameterError unless a plant is discrete and its step stable with an integral (in neutral standing).
+    """Raise ParameterError unless a plant is discrete and its step stable with an integral (at its default positions).
 
     Args:
         plant: finalized.

@@ -108,6 +108,9 @@ class PhaseTransitions:
         if state.swing_side in self._passive_ankles:
             # Nothing lifts its toes.
             toe_up = 0.0
+        # Before a weight shift both feet stood flat, also one that is behind.
+        has_rolled = state.phase is Phase.DOUBLE_SUPPORT
+        toes = foot_behind(state, command, self._parameters).toes[0] if has_rolled else 0.0
         sole = self._footholds.sole
         profile = SwingProfile.from_toe_off(foot, flat_height, toe_up, state.timing.single_support, swing, sole)
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
@@ -121,7 +124,7 @@ class PhaseTransitions:
                 start=foot.position,
                 lift_off=state.elapsed,
                 lowest=np.array([profile.lowest(s, flat_height, sole) for s in TIMES.tolist()]),
-                start_toes=foot_behind(state, command, self._parameters).toes[0],
+                start_toes=toes,
             ),
         )
 
@@ -158,7 +161,7 @@ class PhaseTransitions:
             height=state.height,
             height_rate=state.height_rate,
             steps=state.steps + 1 if is_stepping else 0,
-            early=max(state.timing.step - state.elapsed, 0.0),
+            early=max(state.timing.step - state.elapsed, 0.0) if is_stepping else 0.0,
             timing=self._parameters.timing.at_velocity(command.velocity, caution),
             ground=state.ground,
             caution=caution,

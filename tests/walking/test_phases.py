@@ -87,6 +87,14 @@ def test_the_first_swing_follows_the_weight_shift_and_starts_as_measured() -> No
     assert (height.value, height.rate, pitch.value) == pytest.approx((0.1, 0.2, 0.3))
 
 
+@pytest.mark.parametrize("behind", [0.0, 0.1, 0.15, 0.19])
+def test_a_foot_that_stood_behind_the_other_one_leaves_the_ground_with_straight_toes(behind: float) -> None:
+    """It was flat in the weight shift."""
+    body = replace(BODY, right=foot(-behind - 0.1j))
+    state = LEVEL.start(body, 0.0)._replace(phase=Phase.WEIGHT_SHIFT, elapsed=TIMING.weight_shift)
+    assert advance(LEVEL, state, body, WALK).swing.start_toes == 0.0
+
+
 @pytest.mark.parametrize("passive_ankles", [(), ("Right",), ("Left",)])
 def test_a_foot_without_muscles_at_the_ankle_lands_with_level_toes(passive_ankles: tuple[Side, ...]) -> None:
     phases = PhaseTransitions(PARAMETERS, ANKLE, "Right", Plane(), FOOTHOLDS, passive_ankles)
@@ -167,8 +175,8 @@ def test_steps_to_a_curb_are_careful(height: float) -> None:
 
 
 def test_the_last_step_ends_in_standing() -> None:
-    state = advance(PHASES, in_single_support(1.01), landed_at(-0.1j), STOP)
-    assert (state.phase, state.steps) == (Phase.STAND, 0)
+    state = advance(PHASES, in_single_support(0.95), landed_at(-0.1j), STOP)
+    assert (state.phase, state.steps, state.early) == (Phase.STAND, 0, 0.0)
 
 
 @pytest.mark.parametrize("velocity", [-0.5, 0.8, 0.6j, -0.6j])
