@@ -27,6 +27,7 @@ from humanwalk.bench.cost import TimedWalk, in_turns
 from humanwalk.bench.result import machine
 from humanwalk.body.joint_map import JointMap
 from humanwalk.files import write_text
+from humanwalk.measures.ends import COMPLETED
 from humanwalk.measures.events import foot_events
 from humanwalk.quantity import ParameterError
 from humanwalk.run.monitor import Monitor
@@ -137,7 +138,7 @@ def motion(variant: Variant, duration: float) -> Motion:
     compared = COMPARED[variant.scenario] + 1e-9
     windows = np.diff(at(np.arange(0.0, compared, WINDOW), impulse), axis=0) / WINDOW
     grid = np.arange(0.0, compared, GRID)
-    gait = {"end": monitor.reason or "completed"} | gait_of(time, force, com, GAIT_FROM[variant.scenario])
+    gait = {"end": monitor.reason or COMPLETED} | gait_of(time, force, com, GAIT_FROM[variant.scenario])
     return Motion(windows.reshape(-1, 2, 3), at(grid, angle), at(grid, com), gait)
 
 

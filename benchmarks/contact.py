@@ -25,6 +25,7 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.contact.asperity import AsperityParameters, friction_bound, friction_force, normal_force
 from humanwalk.contact.contact_step import Contacts, ContactStep
 from humanwalk.diagrams.walker import make_diagram
+from humanwalk.measures.ends import COMPLETED
 from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.quantity import GRAVITY
@@ -176,7 +177,7 @@ def measure(scenario: Scenario, signals: Any, how: dict[str, Any], motion: Any) 
     )
     loaded = {side: column(f"{side.lower()}_foot.force_z_N") >= CONTACT_ON_N for side in SIDES}
     use = np.concatenate([column(f"{side.lower()}_foot.friction_use")[loaded[side]] for side in SIDES])
-    if how["end"] != "completed" or steady.sum() < 2 or not use.size:
+    if how["end"] != COMPLETED or steady.sum() < 2 or not use.size:
         return how
     period = time_s[1] - time_s[0]
     depth = np.concatenate([motion[side][0][steady][down[side]] for side in SIDES])
@@ -204,7 +205,7 @@ def compare(fresh: bool) -> dict[str, Any]:
             motion = sole_motion(scenario, signals)
             results.setdefault(walk, {})[model] = measure(scenario, signals, how, motion)
             print(walk, model, json.dumps(results[walk][model]), flush=True)
-            if how["end"] == "completed":
+            if how["end"] == COMPLETED:
                 shown[model] = (scenario, signals, motion)
         end = min(signals[TIME][-1].as_py() for _, signals, _ in shown.values())
         draw(walk, shown, end)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 
+from humanwalk.measures.ends import UNFINISHED
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import PLOTS, REPLAY, SCENARIO, SIGNALS, SUMMARY, Run
 from humanwalk.scenario import load_scenario
@@ -82,7 +83,7 @@ def complaints(folder: Path, number: int, errors: str) -> list[str]:
     if walked and number != signal.SIGKILL:
         if not has_summary:
             found.append("the run is not saved")
-        elif Run.open(folder).summary["end"] == "unfinished":
+        elif Run.open(folder).summary["end"] == UNFINISHED:
             found.append("only a checkpoint is saved")
     return found
 

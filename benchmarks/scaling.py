@@ -32,6 +32,7 @@ from humanwalk.body.contact import ContactSphere
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.files import write_text
+from humanwalk.measures.ends import COMPLETED
 from humanwalk.scenario import load_scenario
 
 RESULTS = Path(__file__).parent / "results"
@@ -56,7 +57,7 @@ def with_time(scenario: str, minutes: int) -> dict[str, Any]:
     grown = np.polyfit([row["minute"] for row in rows[1:]], [row["resident_MB"] for row in rows[1:]], 1)[0]
     return {
         "scenario": scenario,
-        "end": walk.ended or "completed",
+        "end": walk.ended or COMPLETED,
         "record_MB_per_minute": record_MB_per_minute(scenario),
         "growth_MB_per_minute": float(grown),
         "rows": rows,
@@ -86,7 +87,7 @@ def with_contact_points(across: tuple[int, ...] = (2, 4, 8, 16)) -> list[dict[st
             "contact_points": points,
             "cpu_s_per_s": sum(cost.cpu for cost in costs[str(points)]) / 2.0,
             "ratio": float(np.median(np.array([cost.cpu for cost in costs[str(points)]]) / first)),
-            "end": walk.ended or "completed",
+            "end": walk.ended or COMPLETED,
         }
         for points, walk in walks.items()
     ]

@@ -17,6 +17,7 @@ from humanwalk.cli.common import (
     require_look,
     stdout,
 )
+from humanwalk.measures import ends
 from humanwalk.quantity import ParameterError
 
 
@@ -85,9 +86,9 @@ def walk(
         checkpoint_period=checkpoint,
     )
     end = run.summary["end"]
-    if end == "interrupted":
+    if end == ends.INTERRUPTED:
         raise typer.Exit(INTERRUPTED)
-    if end != "completed":
+    if end != ends.COMPLETED:
         raise typer.Exit(FELL)
 
 

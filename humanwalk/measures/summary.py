@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
 from humanwalk.measures.effort import cost_of_transport, joint_names
+from humanwalk.measures.ends import COMPLETED, FELL
 from humanwalk.measures.events import events_of
 from humanwalk.measures.fall import FallReport, report_fall
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
@@ -70,7 +71,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     Args:
         scenario: what was simulated.
         signals: the record.
-        end: why the simulation ended; "completed" at the end of its duration.
+        end: why the simulation ended, see `humanwalk.measures.ends`.
         wall_time: of the simulation [s].
         name: of the scenario.
     """
@@ -90,11 +91,11 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     summary: Summary = {
         "scenario": printable(name),
         "description": printable(scenario.description, 1000),
-        "survived": end == "completed",
+        "survived": end == COMPLETED,
         "end": end,
         "physics": physics,
         "duration_s": float(time[-1]),
-        "fall": report_fall(signals, scenario.subject.mass) if end == "fell" else None,
+        "fall": report_fall(signals, scenario.subject.mass) if end == FELL else None,
         "steady_from_s": steady_from,
         "distance_m": distance_along(signals, every, directions.travel),
         "mean_speed_m_s": _rate(time[steady], distance_along(signals, steady, directions.facing)),

@@ -9,6 +9,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from humanwalk.diagrams.ragdoll import make_ragdoll
 from humanwalk.diagrams.visualizer import add_visualizer
+from humanwalk.measures.ends import FELL
 from humanwalk.measures.summary import Summary
 from humanwalk.numerics import Array
 from humanwalk.scenario import Scenario
@@ -19,7 +20,7 @@ TIME_TO_LIE = 1.5
 
 def replay_duration(summary: Summary) -> float:
     """Duration of the replay of a run [s]: that of the run, and after a fall TIME_TO_LIE more."""
-    return summary["duration_s"] + (TIME_TO_LIE if summary["end"] == "fell" else 0.0)
+    return summary["duration_s"] + (TIME_TO_LIE if summary["end"] == FELL else 0.0)
 
 
 def show_fall(scenario: Scenario, meshcats: Sequence[Meshcat], time: float, state: Array, realtime_rate: float) -> None:

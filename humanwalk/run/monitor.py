@@ -14,6 +14,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, EventStatus, System
 
 from humanwalk.body.limbs import PELVIS
+from humanwalk.measures.ends import FELL, INTERRUPTED, NOT_A_NUMBER
 from humanwalk.terrain import Terrain
 
 FALL_HEIGHT_SHARE = 0.5
@@ -22,9 +23,6 @@ of 18.5 cm it is at 0.59."""
 
 CHECK_PERIOD = 0.01
 """Simulated time between two checks of the state [s]; a check takes time."""
-
-INTERRUPTED = "interrupted"
-"""Reason of a simulation that a signal has ended."""
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """Ctrl-C, the request of a system or a scheduler to end, and a terminal that was closed."""
@@ -38,7 +36,7 @@ class Monitor:
         watched: the plant; without physics the simulated diagram, which cannot fall.
         terrain: what it walks on.
         on_progress: called with the simulated time [s] at every check.
-        reason: why the simulation ended: "fell", "not a number", "interrupted"; empty before that.
+        reason: why the simulation ended: FELL, NOT_A_NUMBER or INTERRUPTED; empty before that.
         interrupted: set from outside to end the simulation at the next check.
     """
 
@@ -80,13 +78,13 @@ class Monitor:
             return ""
         q = plant.GetPositions(plant.GetMyContextFromRoot(root_context))
         if not np.isfinite(q).all():
-            return "not a number"
+            return NOT_A_NUMBER
         place = plant.GetBodyByName(PELVIS).floating_positions_start() + 4
         x, y, z = q[place : place + 3]
         height = z - float(self.terrain.height(np.array((x, y))))
         if self._fallen_below == -math.inf:
             self._fallen_below = FALL_HEIGHT_SHARE * height
-        return "fell" if height < self._fallen_below else ""
+        return FELL if height < self._fallen_below else ""
 
     @contextmanager
     def stop_on_signal(self) -> Iterator[None]:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from humanwalk.measures.ends import COMPLETED
 from humanwalk.measures.signals import TIME
 from humanwalk.measures.summary import Summary, summarize
 from humanwalk.measures.summary_rows import summary_rows, summary_title
@@ -20,8 +21,7 @@ class Outcome:
     Attributes:
         scenario: what was simulated.
         signals: the record, see `humanwalk.measures.signals`.
-        end: "completed", or why it ended early: "fell", "not a number", "solver failed: ...", "interrupted";
-            "unfinished" at a checkpoint.
+        end: why it ended, see `humanwalk.measures.ends`; or "solver failed: ...".
         wall_time: wall-clock time of the simulation [s], without building the diagram.
     """
 
@@ -42,7 +42,7 @@ class Outcome:
     @property
     def survived(self) -> bool:
         """Whether the walker was up for the whole duration."""
-        return self.end == "completed"
+        return self.end == COMPLETED
 
     def summary(self, name: str = "script") -> Summary:
         """The measures, under the name of the scenario; see `humanwalk.measures.summary.summarize`."""

@@ -9,6 +9,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.diagrams.replay import make_replay
 from humanwalk.diagrams.visualizer import add_visualizer
+from humanwalk.measures.ends import FELL
 from humanwalk.measures.signals import matrix
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.fall_picture import show_fall
@@ -40,5 +41,5 @@ def show_run(run: Run, meshcat: Meshcat) -> None:
     replay = builder.AddNamedSystem("replay", make_replay(scenario, time, state, forces))
     add_visualizer(builder, replay, meshcat, scenario.recording.frame_rate, scenario.terrain)
     Simulator(builder.Build()).AdvanceTo(time[-1])
-    if run.summary["end"] == "fell":
+    if run.summary["end"] == FELL:
         show_fall(scenario, [meshcat], time[-1], state[-1], realtime_rate=0.0)

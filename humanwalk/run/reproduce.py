@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from humanwalk.measures.ends import COMPLETED, CUT_SHORT
 from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import Provenance, file_hash, versions
@@ -41,7 +42,7 @@ class Reproduction:
 
 
 def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> Reproduction:
-    """Re-run the scenario of a run folder; an interrupted run is repeated up to its end.
+    """Re-run the scenario of a run folder; a run that was interrupted or left unfinished is repeated up to its end.
 
     `on_progress` is called with the simulated time [s].
 
@@ -51,12 +52,10 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
     scenario, then = run.scenario, run.summary["provenance"]
     notes = list(_changes(run, then))
     last = float(run.time[-1])
-    interrupted = run.summary["end"] == "interrupted"
-    again = simulate(
-        replace(scenario, duration=last) if interrupted and last > 0 else scenario, on_progress=on_progress
-    )
-    # The repetition of an interrupted run completes its shorter duration.
-    end = "interrupted" if interrupted and again.end == "completed" else again.end
+    cut_short = run.summary["end"] in CUT_SHORT
+    again = simulate(replace(scenario, duration=last) if cut_short and last > 0 else scenario, on_progress=on_progress)
+    # The repetition of a run that was cut short completes its shorter duration.
+    end = run.summary["end"] if cut_short and again.end == COMPLETED else again.end
     old, new = run.signals, again.signals
     other = sorted(set(old.column_names) ^ set(new.column_names))
     if other:

@@ -16,10 +16,11 @@ from humanwalk.choices.sources import FROM_SCENARIO, Sources
 from humanwalk.choices.start import start_velocities
 from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
+from humanwalk.measures.ends import COMPLETED, FELL, INTERRUPTED, UNFINISHED
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.fall_picture import show_fall
 from humanwalk.run.live_view import is_lost
-from humanwalk.run.monitor import INTERRUPTED, Monitor
+from humanwalk.run.monitor import Monitor
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.recorder import Recorder
 from humanwalk.run.stored import before_runaway
@@ -170,7 +171,7 @@ def simulate_prepared(
         now = time.perf_counter()
         if on_checkpoint is not None and now - last_checkpoint >= checkpoint_period:
             signals = before_runaway(recorder.table(simulator.get_context()))
-            on_checkpoint(Outcome(scenario, signals, "unfinished", now - started))
+            on_checkpoint(Outcome(scenario, signals, UNFINISHED, now - started))
             last_checkpoint = time.perf_counter()
 
     monitor.on_progress = look
@@ -178,7 +179,7 @@ def simulate_prepared(
         try:
             simulator.Initialize()
             monitor.advance(simulator, scenario.duration)
-            end = monitor.reason or "completed"
+            end = monitor.reason or COMPLETED
         except ParameterError:
             raise
         except (RuntimeError, SystemExit, ValueError, ArithmeticError) as error:
@@ -195,7 +196,7 @@ def simulate_prepared(
         outcome = Outcome(scenario, signals, end, wall_time)
         if on_end is not None:
             on_end(outcome)
-        if end == "fell" and prepared.meshcats and prepared.plant is not None:
+        if end == FELL and prepared.meshcats and prepared.plant is not None:
             context = simulator.get_context()
             state = prepared.plant.GetPositionsAndVelocities(prepared.plant.GetMyContextFromRoot(context))
             show_fall(scenario, prepared.meshcats, context.get_time(), state, fall_rate)

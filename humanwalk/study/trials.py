@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.files import WRITABLE, file_errors, file_of, locked, make_folder, require_inside, write_text
+from humanwalk.measures.ends import COMPLETED
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.scenario import dump_scenario
 from humanwalk.study import journal
@@ -65,7 +66,7 @@ def trial_row(tuning: Tuning, trial: int, parameters: Mapping[str, float], retur
         | {f"values.{name}": value for name, value in values.items()}
         | {"cost": found.cost, "feasible": found.feasible, "upright_share": upright}
         | {"runs": len(simulated), "falls": len(ends)}
-        | {"end": returned.get("end") or (ends[0] if ends else "completed")}
+        | {"end": returned.get("end") or (ends[0] if ends else COMPLETED)}
         | {"wall_time_s": sum(row["wall_time_s"] for row in simulated)}
         | {"host": simulated[0]["host"] if simulated else ""}
     )

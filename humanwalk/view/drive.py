@@ -9,9 +9,10 @@ from enum import Enum
 from pydrake.geometry import Meshcat
 
 from humanwalk.choices.sources import LIVE
+from humanwalk.measures.ends import COMPLETED, FELL, INTERRUPTED
 from humanwalk.measures.fall import report_fall
 from humanwalk.run.driven import Driven, require_drivable
-from humanwalk.run.monitor import CHECK_PERIOD, INTERRUPTED, Monitor, caught_signals
+from humanwalk.run.monitor import CHECK_PERIOD, Monitor, caught_signals
 from humanwalk.run.outcome import Outcome
 from humanwalk.run.pace import Pace
 from humanwalk.run.simulate import Prepared, prepare, simulate_prepared
@@ -159,9 +160,9 @@ class Driver:
         """The walk that has ended, and what ended it; the page shows why."""
         by_hand = outcome.end == INTERRUPTED
         # A hand ends a walk as its duration does.
-        end = "completed" if by_hand else outcome.end
+        end = COMPLETED if by_hand else outcome.end
         mass = outcome.scenario.subject.mass
-        reason = report_fall(outcome.signals, mass)["description"] if end == "fell" else end
+        reason = report_fall(outcome.signals, mass)["description"] if end == FELL else end
         self._page.show(self.driven.time, 0.0, 0.0, f"{reason}; reset with R", ended=True)
         ended = Ended.WALK if not by_hand else Ended.RESET if self.reset else Ended.INTERRUPT
         record = self.record and self.driven.time > MIN_DURATION

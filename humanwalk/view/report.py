@@ -11,6 +11,7 @@ from rich.table import Column, Table
 
 from humanwalk.gait.normative import SPEED_GROUPS, is_measured
 from humanwalk.measures.curves import ANGLES, CURVES, MOMENTS, POWERS, Curve
+from humanwalk.measures.ends import UP_AT_ITS_END
 from humanwalk.measures.human_likeness import MIN_STRIDES, SCORED, Comparison, compare, pooled
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
@@ -31,8 +32,6 @@ FIGURES = (
 
 SPREAD = " ± "
 """Between a mean and a standard deviation."""
-
-UP_AT_ITS_END = ("completed", "interrupted", "unfinished")
 
 GROUPS: dict[str, Mapping[str, Curve]] = {
     "angle [deg]": ANGLES,

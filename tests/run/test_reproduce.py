@@ -69,11 +69,14 @@ def test_results_of_a_rerun_match_exactly(run: Run) -> None:
     assert (result.bits_agree, result.measures_agree, result.notes) == (True, True, ())
 
 
-def test_interrupted_run_is_repeated_up_to_its_end(run: Run) -> None:
-    stopped = change_summary(run, lambda summary: summary.update(end="interrupted"))
+@pytest.mark.parametrize("end", ["interrupted", "unfinished"])
+def test_run_that_was_cut_short_is_repeated_up_to_its_end(run: Run, end: str) -> None:
+    stopped = change_summary(run, lambda summary: summary.update(end=end))
     text = (run.path / SCENARIO).read_text()
     (run.path / SCENARIO).write_text(text.replace("duration: 0.1", "duration: 60.0"))
-    assert reproduce(Run.open(stopped.path)).bits_agree
+    result = reproduce(Run.open(stopped.path))
+    assert (result.bits_agree, result.measures_agree, result.notes) == (True, True, ())
+    assert result.verdict == "the same bits in every signal"
 
 
 def test_other_bits_with_the_same_measures_are_distinguished(run: Run) -> None:
