@@ -213,9 +213,9 @@ def _fix(value: float, unit: str, low: float, high: float) -> str:
     return f"the nearest allowed value is {nearest}"
 
 
-def numbers_of(parameters: Any, path: str = "") -> Iterator[tuple[str, float, Metadata]]:
+def numbers_of(parameters: Any) -> Iterator[tuple[str, float, Metadata]]:
     """Dotted name, value and metadata (unit, low, high) of every quantity in a tree of dataclasses; see `check`."""
-    return _quantities(parameters, path, {})
+    return _quantities(parameters, "", {})
 
 
 def _quantities(value: Any, path: str, metadata: Metadata) -> Iterator[tuple[str, float, Metadata]]:

@@ -22,14 +22,12 @@ class Marker:
         body: Name of the segment.
         position: Position in the body frame, p_BoM_B [m].
         landmark: Anatomical landmark.
-        plug_in_gait: Whether the marker is in Plug-in-Gait.
     """
 
     name: str
     body: str
     position: Vector3
     landmark: str
-    plug_in_gait: bool = True
 
     def mirrored(self) -> "Marker":
         """Return the left counterpart of a right marker."""
@@ -78,7 +76,7 @@ def _right() -> tuple[Marker, ...]:
         Marker("RSHO", "Scapula", (-0.004, -0.215, 0.035), "acromion"),
         Marker("RUPA", upper_arm, (0.004, -0.040, -0.150), "outer side of the upper arm"),
         Marker("RELB", upper_arm, _beside(elbow, y=-0.0385), "lateral epicondyle of the humerus"),
-        Marker("RELM", upper_arm, _beside(elbow, y=0.0385), "medial epicondyle of the humerus", False),
+        Marker("RELM", upper_arm, _beside(elbow, y=0.0385), "medial epicondyle of the humerus"),
         Marker("RFRM", forearm, (0.001, -0.041, -0.075), "outer side of the forearm"),
         Marker("RWRA", forearm, _beside(wrist, x=0.028), "wrist, thumb side"),
         Marker("RWRB", forearm, _beside(wrist, x=-0.028), "wrist, little finger's side"),
@@ -87,15 +85,15 @@ def _right() -> tuple[Marker, ...]:
         Marker("RPSI", "Pelvis", (-0.105, -0.045, 0.103), "posterior superior iliac spine"),
         Marker("RTHI", thigh, (0.003, -0.059, -0.280), "outer side of the thigh, lower third"),
         Marker("RKNE", thigh, _beside(knee, y=-0.056), "lateral epicondyle of the femur"),
-        Marker("RKNM", thigh, _beside(knee, y=0.056), "medial epicondyle of the femur", False),
+        Marker("RKNM", thigh, _beside(knee, y=0.056), "medial epicondyle of the femur"),
         Marker("RTIB", shank, (-0.005, -0.050, -0.210), "outer side of the shank"),
         Marker("RANK", shank, _beside(ankle, y=-0.036), "lateral malleolus"),
-        Marker("RANM", shank, _beside(ankle, y=0.036), "medial malleolus", False),
+        Marker("RANM", shank, _beside(ankle, y=0.036), "medial malleolus"),
         Marker("RHEE", hind_foot, (-0.053, 0.0, -0.021), "back of the heel"),
         Marker("RTOE", mid_foot, (0.070, 0.0, 0.0105), "head of the second metatarsal"),
-        Marker("RMT1", mid_foot, (0.070, 0.045, -0.012), "head of the first metatarsal", False),
-        Marker("RMT5", mid_foot, (0.060, -0.045, -0.012), "head of the fifth metatarsal", False),
-        Marker("RTIP", toes, (0.0595, 0.0, 0.0015), "tip of the shoe", False),
+        Marker("RMT1", mid_foot, (0.070, 0.045, -0.012), "head of the first metatarsal"),
+        Marker("RMT5", mid_foot, (0.060, -0.045, -0.012), "head of the fifth metatarsal"),
+        Marker("RTIP", toes, (0.0595, 0.0, 0.0015), "tip of the shoe"),
     )
 
 

@@ -40,9 +40,8 @@ def largest_contact_step(
     damping: Array,
     joint_law: Callable[[float], tuple[Array, Array]],
     joint_stiffness: Array,
-    upper: float = MAX_STEP,
 ) -> float:
-    """Return the largest step [s] at which a body on sticking patches stays bounded, linearized at rest.
+    """Return the largest step [s] up to MAX_STEP at which a body on sticking patches stays bounded, linearized at rest.
 
     The plant's step is (M + D) v' = (M - E) v - h Kp q + h J' F, q' = q + h v'; F is that of `ContactStep`.
 
@@ -53,7 +52,6 @@ def largest_contact_step(
         damping: Of the contact, C, likewise.
         joint_law: D and E of the joints' law at a step h, shape (nv,) each.
         joint_stiffness: Kp, shape (nv,).
-        upper: Largest step that is tried [s].
     """
     m, n = J.shape
 
@@ -69,4 +67,4 @@ def largest_contact_step(
         q[:, :n] += np.eye(n)
         return np.vstack((q, v, np.hstack((np.zeros((m, n)), J, np.zeros((m, 2 * m)))), F))
 
-    return largest_stable_step(update, upper)
+    return largest_stable_step(update, MAX_STEP)
