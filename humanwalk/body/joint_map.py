@@ -1,4 +1,4 @@
-"""Indices of the actuated joints in a plant's state.
+"""Indices of the pelvis and of the actuated joints in a plant's state.
 
 Drake orders positions by a depth-first traversal of the tree and actuators by their order in the model file; in this
 body the two orders differ from the shoulder girdle on.
@@ -11,6 +11,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
 from pydrake.systems.framework import Context
 
+from humanwalk.body.limbs import PELVIS
 from humanwalk.numerics import Array, Indices, Mask
 
 MAX_PLAY = 0.02
@@ -69,6 +70,18 @@ class JointMap:
     def velocities(self, state: Array) -> Array:
         """Return the joint velocities [rad/s] of plant states [q; v], shape (..., n)."""
         return state[..., self.num_positions + self.v]
+
+
+def pelvis_pose(plant: MultibodyPlant) -> slice:
+    """Return the place of the floating pelvis in the positions q: quaternion wxyz, then position in W [m]; length 7."""
+    start = plant.GetBodyByName(PELVIS).floating_positions_start()
+    return slice(start, start + 7)
+
+
+def pelvis_velocity(plant: MultibodyPlant) -> slice:
+    """Return the place of the floating pelvis in the velocities v: angular, then linear, in W; length 6."""
+    start = plant.GetBodyByName(PELVIS).floating_velocities_start_in_v()
+    return slice(start, start + 6)
 
 
 def base_first_mass_matrix(plant: MultibodyPlant, context: Context) -> Array:

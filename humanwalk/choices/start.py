@@ -8,8 +8,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 
 from humanwalk.body import contact_spheres
-from humanwalk.body.joint_map import ROUNDING, JointMap
-from humanwalk.body.limbs import PELVIS
+from humanwalk.body.joint_map import ROUNDING, JointMap, pelvis_pose
 from humanwalk.body.plant import body_plant
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
@@ -98,13 +97,13 @@ def start_positions(
 
     q = plant.GetPositions(context)
     q[joints.q] = theta
-    pelvis = plant.GetBodyByName(PELVIS).floating_positions_start()
-    q[pelvis : pelvis + 7] = [*posture.X_WP.rotation().ToQuaternion().wxyz(), *posture.X_WP.translation()]
+    pelvis = pelvis_pose(plant)
+    q[pelvis] = [*posture.X_WP.rotation().ToQuaternion().wxyz(), *posture.X_WP.translation()]
     plant.SetPositions(context, q)
     spheres = contact_spheres(subject.skeleton)
     centers = np.array([plant.GetBodyByName(s.body).EvalPoseInWorld(context) @ np.array(s.center) for s in spheres])
     clearance = centers[:, 2] - [s.radius for s in spheres] - terrain.height(centers[:, :2])
-    q[pelvis + 6] += start.pelvis_lift - clearance.min()
+    q[pelvis.stop - 1] += start.pelvis_lift - clearance.min()
     return q
 
 

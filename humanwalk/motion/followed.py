@@ -9,8 +9,8 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
 from humanwalk.body import contact_spheres
-from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import LEGS, PELVIS
+from humanwalk.body.joint_map import JointMap, pelvis_pose
+from humanwalk.body.limbs import LEGS
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
@@ -253,14 +253,14 @@ class _Body:
     def __init__(self, plant: MultibodyPlant, subject: Subject, joints: JointMap) -> None:
         self._plant, self._joints = plant, joints
         self._context: Context = plant.CreateDefaultContext()
-        self._pelvis = plant.GetBodyByName(PELVIS).floating_positions_start()
+        self._pelvis = pelvis_pose(plant)
         self._spheres = [(plant.GetBodyByName(s.body), s) for s in contact_spheres(subject.skeleton)]
 
     def sole_points(self, angles: Array, pelvis_angles: Array) -> Array:
         """Lowest points of the contact spheres relative to the pelvis, in W [m], shape (spheres, 3)."""
         q = self._plant.GetPositions(self._context)
         q[self._joints.q] = angles
-        q[self._pelvis : self._pelvis + 7] = [*pelvis_rotation(pelvis_angles).ToQuaternion().wxyz(), 0.0, 0.0, 0.0]
+        q[self._pelvis] = [*pelvis_rotation(pelvis_angles).ToQuaternion().wxyz(), 0.0, 0.0, 0.0]
         self._plant.SetPositions(self._context, q)
         centers = [body.EvalPoseInWorld(self._context) @ np.array(sphere.center) for body, sphere in self._spheres]
         return np.array(centers) - [[0.0, 0.0, sphere.radius] for _, sphere in self._spheres]

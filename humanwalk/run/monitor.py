@@ -13,7 +13,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, EventStatus, System
 
-from humanwalk.body.limbs import PELVIS
+from humanwalk.body.joint_map import pelvis_pose
 from humanwalk.measures.ends import FELL, INTERRUPTED, NOT_A_NUMBER
 from humanwalk.terrain import Terrain
 
@@ -79,8 +79,7 @@ class Monitor:
         q = plant.GetPositions(plant.GetMyContextFromRoot(root_context))
         if not np.isfinite(q).all():
             return NOT_A_NUMBER
-        place = plant.GetBodyByName(PELVIS).floating_positions_start() + 4
-        x, y, z = q[place : place + 3]
+        x, y, z = q[pelvis_pose(plant)][4:]
         height = z - float(self.terrain.height(np.array((x, y))))
         if self._fallen_below == -math.inf:
             self._fallen_below = FALL_HEIGHT_SHARE * height

@@ -4,7 +4,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from humanwalk.body.limbs import PELVIS
+from humanwalk.body.joint_map import pelvis_pose, pelvis_velocity
 from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
 from humanwalk.systems.signal import Signal, xyz
 
@@ -29,11 +29,8 @@ class BalanceSupport(LeafSystem):
         """Make the support of a finalized plant with a floating pelvis."""
         super().__init__()
         self._parameters = parameters
-        pelvis = plant.GetBodyByName(PELVIS)
-        first_q, first_v = pelvis.floating_positions_start(), pelvis.floating_velocities_start_in_v()
-        self._pose = slice(first_q, first_q + 7)
-        self._velocity = slice(plant.num_positions() + first_v, plant.num_positions() + first_v + 6)
-        self._base = slice(first_v, first_v + 6)
+        self._num_positions = plant.num_positions()
+        self._pose, self._velocity = pelvis_pose(plant), pelvis_velocity(plant)
         self._reference = self.DeclareVectorInputPort("pelvis_reference", 13)
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._wrench = self.DeclareVectorOutputPort("wrench", 6, self._calc_wrench)
@@ -43,10 +40,11 @@ class BalanceSupport(LeafSystem):
 
     def _calc_wrench(self, context: Context, output: BasicVector) -> None:
         state, reference = self._state.Eval(context), self._reference.Eval(context)
-        output.SetFromVector(support_wrench(state[self._pose], state[self._velocity], reference, self._parameters))
+        q, v = state[: self._num_positions], state[self._num_positions :]
+        output.SetFromVector(support_wrench(q[self._pose], v[self._velocity], reference, self._parameters))
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         # The velocities of the floating base are the spatial velocity of the pelvis in W.
         force = np.zeros(output.size())
-        force[self._base] = self._wrench.Eval(context)
+        force[self._velocity] = self._wrench.Eval(context)
         output.SetFromVector(force)

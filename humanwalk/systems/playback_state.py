@@ -4,8 +4,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import PELVIS
+from humanwalk.body.joint_map import JointMap, pelvis_pose, pelvis_velocity
 
 
 class PlaybackState(LeafSystem):
@@ -23,9 +22,8 @@ class PlaybackState(LeafSystem):
     def __init__(self, plant: MultibodyPlant) -> None:
         """Make the system for a finalized plant with a floating pelvis."""
         super().__init__()
-        joints, pelvis, nq = JointMap.of(plant), plant.GetBodyByName(PELVIS), plant.num_positions()
-        base_q, base_v = pelvis.floating_positions_start(), nq + pelvis.floating_velocities_start_in_v()
-        self._base = np.concatenate((np.arange(base_q, base_q + 7), np.arange(base_v, base_v + 6)))
+        joints, nq = JointMap.of(plant), plant.num_positions()
+        self._base = np.concatenate((np.r_[pelvis_pose(plant)], nq + np.r_[pelvis_velocity(plant)]))
         self._joints = np.concatenate((joints.q, nq + joints.v))
         self._reference = self.DeclareVectorInputPort("pelvis_reference", 13)
         self._desired = self.DeclareVectorInputPort("desired_state", self._joints.size)

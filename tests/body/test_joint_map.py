@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+from pydrake.common.eigen_geometry import Quaternion
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialVelocity
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import human
 from humanwalk.body.impairments import StiffKnee
-from humanwalk.body.joint_map import MAX_PLAY, JointMap
-from humanwalk.body.limbs import LEGS
+from humanwalk.body.joint_map import MAX_PLAY, JointMap, pelvis_pose, pelvis_velocity
+from humanwalk.body.limbs import LEGS, PELVIS
 from humanwalk.body.plant import body_plant
 from humanwalk.body.subject import Subject
 
@@ -29,6 +32,17 @@ def test_positions_and_velocities_are_the_plants_own(plant: MultibodyPlant, join
     np.testing.assert_array_equal(joints.positions(state), q)
     np.testing.assert_array_equal(joints.positions(state[: joints.num_positions]), q)
     np.testing.assert_array_equal(joints.velocities(state), v)
+
+
+def test_pose_and_velocity_of_the_pelvis_are_the_plants_own(plant: MultibodyPlant) -> None:
+    context, pelvis = plant.CreateDefaultContext(), plant.GetBodyByName(PELVIS)
+    X_WP = RigidTransform(Quaternion(0.8, 0.0, 0.6, 0.0), [1.0, 2.0, 3.0])
+    velocity = np.arange(1.0, 7.0)
+    plant.SetFreeBodyPose(context, pelvis, X_WP)
+    plant.SetFreeBodySpatialVelocity(context, pelvis, SpatialVelocity(velocity))
+    q, v = plant.GetPositions(context), plant.GetVelocities(context)
+    np.testing.assert_allclose(q[pelvis_pose(plant)], [0.8, 0.0, 0.6, 0.0, 1.0, 2.0, 3.0], rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(v[pelvis_velocity(plant)], velocity)
 
 
 @pytest.mark.parametrize("angle", [0.05, 0.1745, 0.3, 0.5, 0.7])
