@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from humanwalk.body.contact import SoleExtent
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
-from humanwalk.walking.motions import Cubic, PlanarMotion, ScalarMotion
+from humanwalk.walking.motions import Cubic, PiecewiseCubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
 MAX_TOE_UP = 0.442
@@ -106,8 +106,11 @@ class SwingProfile:
     Their accelerations are continuous: a jump in them would be a jump in the moments of ankle, knee and hip.
     """
 
-    pieces: tuple[tuple[Cubic, Cubic], ...]
-    """Height [m] and pitch [rad] over equal parts of the progress."""
+    height: PiecewiseCubic
+    """Of the ankle [m]."""
+
+    pitch: PiecewiseCubic
+    """Toes down positive [rad]."""
 
     @staticmethod
     def from_toe_off(
@@ -139,8 +142,8 @@ class SwingProfile:
         first = quarter * np.array((foot.height_rate, foot.pitch_rate))
         last = quarter * np.array((-parameters.landing_sink_rate, 0.0))
         spline = CubicSpline(np.arange(len(points)), points, bc_type=((1, first), (1, last)))
-        coefficients = spline.c[::-1].transpose(1, 2, 0).tolist()
-        return SwingProfile(tuple((Cubic(*height), Cubic(*pitch)) for height, pitch in coefficients))
+        curves = spline.c[::-1].transpose(2, 1, 0).tolist()
+        return SwingProfile(*(PiecewiseCubic(tuple(Cubic(*piece) for piece in curve)) for curve in curves))
 
     def lowest(self, progress: float, flat_height: float, sole: SoleExtent) -> float:
         """Height of the lowest point of the sole above the ground [m]; see `from_toe_off`."""
@@ -150,8 +153,4 @@ class SwingProfile:
 
     def at(self, progress: float) -> tuple[ScalarMotion, ScalarMotion]:
         """Height and pitch with their derivatives by the progress, which is clipped to [0, 1]."""
-        n = len(self.pieces)
-        s = clip(progress, 0.0, 1.0) * n
-        i = min(int(s), n - 1)
-        height, pitch = self.pieces[i]
-        return height.at(s - i).time_scaled(n), pitch.at(s - i).time_scaled(n)
+        return self.height.at(progress), self.pitch.at(progress)
