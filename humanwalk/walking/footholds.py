@@ -189,27 +189,32 @@ def nearest_foothold(
     Returns:
         The foothold; the desired place itself where none is in reach.
     """
-    here = Foothold.on(ground, desired)
-    is_current = current is None or here.face.covers_as(current)
-    has_room = places_on(here.face, desired, yaw, sole, search) == [desired]
-    if is_current and has_room and is_reachable(desired, here.ground):
-        return here
     expected = desired if expected is None else expected
-    u, best, least = cmath.exp(1j * yaw), here, float("inf")
-    for face in ground.faces_near(np.array((expected.real, expected.imag)), search.distance):
-        same = current is not None and face.covers_as(current)
-        if is_final and not same:
-            continue
+    u = cmath.exp(1j * yaw)
+
+    def is_current(face: Face) -> bool:
+        return current is not None and face.covers_as(current)
+
+    def on_face(face: Face) -> Foothold | None:
         places = places_on(face, desired, yaw, sole, search)
         for place in places:
             off, height = (place - expected) / u, _height(face, place)
-            if max(abs(off.real), abs(off.imag)) > search.distance or not is_reachable(place, height):
-                continue
-            if len(places) > 1 and not has_free_ground(ground, place, face, yaw, sole):
-                continue
-            cost = abs(complex(off.real, search.lateral_weight * off.imag)) - search.same_face * same
-            cost += search.height_weight * abs(height - level)
-            if cost < least:
-                best, least = Foothold(place, height, face), cost
-            break
-    return best
+            is_near = max(abs(off.real), abs(off.imag)) <= search.distance
+            is_in_reach = is_near and is_reachable(place, height)
+            if is_in_reach and (len(places) == 1 or has_free_ground(ground, place, face, yaw, sole)):
+                return Foothold(place, height, face)
+        return None
+
+    def cost(foothold: Foothold) -> float:
+        off = (foothold.position - expected) / u
+        distance = abs(complex(off.real, search.lateral_weight * off.imag))
+        bonus = search.same_face * is_current(foothold.face)
+        return distance - bonus + search.height_weight * abs(foothold.ground - level)
+
+    here = Foothold.on(ground, desired)
+    has_room = places_on(here.face, desired, yaw, sole, search) == [desired]
+    if (current is None or is_current(here.face)) and has_room and is_reachable(desired, here.ground):
+        return here
+    faces = ground.faces_near(np.array((expected.real, expected.imag)), search.distance)
+    found = (on_face(face) for face in faces if is_current(face) or not is_final)
+    return min((foothold for foothold in found if foothold is not None), key=cost, default=here)
