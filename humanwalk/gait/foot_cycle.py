@@ -42,26 +42,28 @@ TABLE_SIZE = 4096
 
 @dataclass(frozen=True)
 class FootPathParameters:
-    """Size and timing of the foot path (thesis 4.2.3).
-
-    step_length: L, travel of the foot under the hip in stance [m], 0.1..1. The step over ground is L / (2 duty_factor)
-        (E26).
-    step_height: H, maximum height of the sole above the ground [m], 0.02..0.4 (E9).
-    offset: height of the pelvis in standing above that in walking [m], 0..0.3 (E32).
-    duty_factor: fraction of the cycle in stance, 0.55..0.8 (E26: the thesis' own is below 0.5).
-    toe_drop: maximum pitch of the sole, toes down, reached at mid-swing [rad], 0..1.2. The thesis keeps the orientation
-        of the foot constant (4.2.3); lifting it by H = 0.2 m then needs 45 degrees of dorsiflexion, beyond the range of
-        any ankle. 0.45 rad keeps the ankle within 35 degrees. 0 is the thesis' assumption.
-    swing: "thesis" is a Hermite spline through appendix A's points by arc length; "smooth" is ours: the same ends and
-        height with polynomials in time, and far smaller accelerations.
-    """
+    """Size and timing of the foot path (thesis 4.2.3)."""
 
     step_length: float = quantity(0.5, "m", 0.1, 1.0)
+    """L, travel of the foot under the hip in stance. The step over ground is L / (2 duty_factor) (E26)."""
+
     step_height: float = quantity(0.2, "m", 0.02, 0.4)
+    """H, maximum height of the sole above the ground (E9)."""
+
     offset: float = quantity(0.05, "m", 0.0, 0.3)
+    """Height of the pelvis in standing above that in walking (E32)."""
+
     duty_factor: float = quantity(0.6, "", 0.55, 0.8)
+    """Fraction of the cycle in stance (E26: the thesis' own is below 0.5)."""
+
     toe_drop: float = quantity(0.45, "rad", 0.0, 1.2)
+    """Maximum pitch of the sole, toes down, reached at mid-swing. The thesis keeps the orientation of the foot constant
+    (4.2.3), which is 0 here; lifting it by H = 0.2 m then needs 45 degrees of dorsiflexion, beyond the range of any
+    ankle. 0.45 rad keeps the ankle within 35 degrees."""
+
     swing: SwingLaw = "thesis"
+    """`thesis` is a Hermite spline through appendix A's points by arc length; `smooth` is ours: the same ends and
+    height with polynomials in time, and far smaller accelerations."""
 
     def __post_init__(self) -> None:
         check(self)

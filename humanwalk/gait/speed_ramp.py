@@ -8,14 +8,13 @@ from humanwalk.quantity import check, quantity
 
 @dataclass(frozen=True)
 class SpeedRamp:
-    """Speed of the pelvis over time: 0 before t = 0, linear up to `duration`, then `speed`.
-
-    speed: [m/s], 0..3; the thesis has 1.4; with 0 the body stands.
-    duration: [s], 0..60. 0 starts at full speed, with a jump of the velocities.
-    """
+    """Speed of the pelvis over time: 0 before t = 0, linear up to `duration`, then `speed`."""
 
     speed: float = quantity(1.4, "m/s", 0.0, 3.0)
+    """Speed after the ramp: 1.4 in the thesis; with 0 the body stands."""
+
     duration: float = quantity(1.0, "s", 0.0, 60.0)
+    """Duration of the ramp. 0 starts at full speed, with a jump of the velocities."""
 
     def __post_init__(self) -> None:
         check(self)

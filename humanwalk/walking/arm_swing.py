@@ -10,17 +10,17 @@ from humanwalk.quantity import check, quantity
 
 @dataclass(frozen=True)
 class ArmSwingParameters:
-    """Size of the arm swing at full speed.
-
-    shoulder_amplitude: flexion to either side of hanging [rad], 0..1.
-    elbow_flexion: mean flexion, also at rest [rad], 0..1.5.
-    elbow_amplitude: to either side of the mean, largest when the arm is in front [rad], 0..0.5; limited to
-        elbow_flexion, since the elbow does not extend beyond straight.
-    """
+    """Size of the arm swing at full speed."""
 
     shoulder_amplitude: float = quantity(0.35, "rad", 0.0, 1.0)
+    """Flexion of the shoulder to either side of hanging."""
+
     elbow_flexion: float = quantity(0.35, "rad", 0.0, 1.5)
+    """Mean flexion of the elbow, also at rest."""
+
     elbow_amplitude: float = quantity(0.1, "rad", 0.0, 0.5)
+    """Flexion of the elbow to either side of the mean, largest when the arm is in front; limited to `elbow_flexion`,
+    since the elbow does not extend beyond straight."""
 
     def __post_init__(self) -> None:
         check(self)

@@ -37,6 +37,8 @@ class CommandPoint:
     """When the speeds begin to change towards these."""
 
     forward: float = quantity(0.0, "m/s", -1.5, 3.0)
+    """Along the heading; backward is negative."""
+
     sideways: float = quantity(0.0, "m/s", -1.0, 1.0)
     """To the left."""
 
