@@ -7,7 +7,7 @@ import dataclasses
 import functools
 import math
 import typing
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -249,23 +249,44 @@ def _build_choice(choices: Mapping[str, type[Any]], value: Any, place: _Place) -
 
 
 def _hint(name: str, fields: Mapping[str, Any], place: _Place) -> str:
-    """Where an unknown field belongs, or the field that may be meant."""
-    homes = [path for path, _ in fields_of(place.root) if path.rsplit(".", 1)[-1] == name]
-    if 0 < len(homes) <= 3:
-        return f"; it belongs to {' or '.join(home.rpartition('.')[0] or 'the top of the file' for home in homes)}"
-    return did_you_mean(name, tuple(fields))
+    """Where an unknown field belongs; if only to entries, also the field that may be meant."""
+    of_entries = fields_of(place.root, entries=True)
+    return _homes(name, fields_of(place.root)) or _homes(name, of_entries) + did_you_mean(name, tuple(fields))
 
 
-def fields_of(kind: Any, path: str = "") -> Iterator[tuple[str, dataclasses.Field[Any]]]:
-    """Dotted names and fields of a dataclass of parameters, with those of its groups and of every choice."""
+def _homes(name: str, fields: Iterable[tuple[str, dataclasses.Field[Any]]]) -> str:
+    """The groups with a field of a name, out of fields with dotted names; nothing if there are many."""
+    homes = [path.rpartition(".")[0] for path, _ in fields if path.rpartition(".")[-1] == name]
+    if not 0 < len(homes) <= 3:
+        return ""
+    return f"; it belongs to {' or '.join(home or 'the top of the file' for home in homes)}"
+
+
+def fields_of(kind: Any, path: str = "", entries: bool = False) -> Iterator[tuple[str, dataclasses.Field[Any]]]:
+    """Dotted names and fields of a dataclass of parameters, with those of its groups and of every choice.
+
+    Args:
+        kind: The dataclass.
+        path: Its own dotted name.
+        entries: Whether the fields of entries are among them: of lists with the index 0, of mappings under NAME.
+    """
     hints = _hints(kind)
     for field in dataclasses.fields(kind):
-        name = f"{path}.{field.name}" if path else field.name
+        name, hint = f"{path}.{field.name}" if path else field.name, hints[field.name]
         yield name, field
-        for tag, chosen in field.metadata.get("choices", {}).items():
-            yield from fields_of(chosen, f"{name}.{tag}")
-        if dataclasses.is_dataclass(hints[field.name]):
-            yield from fields_of(hints[field.name], name)
+        groups = _tagged_kinds(field, "choices", name)
+        if entries:
+            of_list = typing.get_args(hint)[:1] if typing.get_origin(hint) is tuple else ()
+            groups += _tagged_kinds(field, "choice_list", f"{name}.0") or [(f"{name}.0", of) for of in of_list]
+            groups += _tagged_kinds(field, "choices_by_name", f"{name}.NAME")
+        for group, inside in (*groups, (name, hint)):
+            if dataclasses.is_dataclass(inside):
+                yield from fields_of(inside, group, entries)
+
+
+def _tagged_kinds(field: dataclasses.Field[Any], metadata: str, path: str) -> list[tuple[str, Any]]:
+    """Dotted names of the kinds that metadata of a field list by their tags, and these kinds."""
+    return [(f"{path}.{tag}", kind) for tag, kind in field.metadata.get(metadata, {}).items()]
 
 
 def anchor_paths(kind: Any, data: Any, folder: Path) -> None:

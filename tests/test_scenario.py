@@ -498,12 +498,22 @@ def test_every_number_is_refused_just_outside_its_range(key: str) -> None:
             "actuation.pd or actuation.pid or actuation.adaptive",
         ),
         ("controller: {balanced: {seed: 3}}", "controller.balanced.seed", "the top of the file"),
+        ("subject: {shortening: 0.1}", "subject.shortening", "subject.impairments.0.short_leg"),
+        (
+            "terrain: {course: {pieces: [{slope: {tread: 0.3}}]}}",
+            "terrain.course.pieces.0.slope.tread",
+            "terrain.course.pieces.0.stairs",
+        ),
     ],
 )
 def test_setting_of_another_choice_is_refused_with_the_place_where_it_belongs(text: str, field: str, home: Any) -> None:
     message = refusal(text)
     assert f"{field}: no such field" in message
     assert message.endswith(f"it belongs to {home}")
+
+
+def test_field_of_an_entry_with_a_similar_name_in_its_place_is_refused_with_both() -> None:
+    assert refusal("pushes: {impulse: 60}").endswith("it belongs to pushes.given.0; did you mean random_impulse?")
 
 
 @pytest.mark.parametrize(

@@ -94,6 +94,7 @@ def test_column_shows_the_scenarios_value_where_a_point_has_none() -> None:
         ("factors: {duration: {range: {low: 2, high: 1}}}", r"factors\.duration\.range\.low: 2 and high: 1"),
         ("factors: {duration: [.nan]}", r"factors\.duration\.values\.0: nan cannot be a value"),
         ("factors: {push: {variants: {a: 3}}}", r"factors\.push\.variants\.a: 3 is not a mapping"),
+        ("factors: {duration: {range: {mean: 3.0}}}", r"no such field; .*; it belongs to factors\.NAME\.normal$"),
         ("design: sobl", "did you mean sobol"),
         ("keep: everything", "keep: 'everything' is unknown; allowed: summary, runs"),
         ("scenario: tesis", "did you mean thesis"),
