@@ -15,7 +15,7 @@ from humanwalk.body.limbs import PELVIS
 from humanwalk.numerics import Array, Indices, Mask
 
 MAX_PLAY = 0.02
-"""Largest range of a locked joint [rad]: one degree."""
+"""Largest range of a locked joint [rad]: about one degree."""
 
 ROUNDING = 1e-9
 """Error of a joint's range [rad] that comes from the ten digits of a model file."""

@@ -19,7 +19,8 @@ class TaskGains:
     """Acceleration per velocity error."""
 
     weight: float = quantity(1.0, "", 0.0, 1e5)
-    """Cost per squared acceleration error; that of an angular acceleration is multiplied by `rotation_radius`."""
+    """Cost per squared acceleration error; that of an angular acceleration is multiplied by the square of
+    `rotation_radius`."""
 
 
 @dataclass(frozen=True)

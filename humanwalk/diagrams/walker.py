@@ -22,6 +22,8 @@ from humanwalk.scenario import Scenario, require_scenario
 def make_walker(scenario: Scenario, visuals: bool = True, sources: Sources = FROM_SCENARIO) -> Diagram:
     """Wire the walker of a scenario; its default context stands at the scenario's start.
 
+    It stands at rest: the noise of the rates (`start.rate_noise`) is set by `humanwalk.run.simulate.prepare`.
+
     Subsystems by name: plant, scene_graph, body_observer, foot_contact, actuators, pushes and, where enabled,
     leg_contact; and those of the controller: gait, arms, inverse_kinematics and, where enabled, support,
     foot_force_balance, upper_body_balance (thesis); command, load_observer, planner, controller (balanced); recording,

@@ -39,7 +39,7 @@ class Prepared:
         simulator: of a root diagram with the walker in it, not initialized.
         walker: the scenario's diagram.
         plant: the plant in it; None where a recording is shown without physics.
-        recorder: its log sinks; None where nothing is recorded.
+        recorder: of its signals; None where nothing is recorded.
         live_view: of the live picture; None where there is none.
         meshcats: all that show the motion.
     """
