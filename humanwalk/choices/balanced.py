@@ -16,7 +16,7 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body.upright import knee_flexions
 from humanwalk.body_units import scaled
-from humanwalk.choices.controller import Command
+from humanwalk.choices.controller import JointCommand
 from humanwalk.choices.start import StartPosture, load_lean
 from humanwalk.choices.style import STYLES, NoStyle, Style
 from humanwalk.choices.world import World
@@ -165,7 +165,7 @@ class BalancedController:
             angles |= {leg.hip_flexion: 0.5 * flexion, leg.knee: flexion, leg.ankle: 0.5 * flexion + slope + lean}
         return StartPosture(angles, RigidTransform(RollPitchYaw(0.0, lean, 0.0), np.zeros(3)))
 
-    def add_to(self, world: World) -> Command:
+    def add_to(self, world: World) -> JointCommand:
         """Add command, load_observer, planner and controller.
 
         Raises:
@@ -215,7 +215,7 @@ class BalancedController:
         if world.known_assistance is not None:
             world.builder.Connect(world.known_assistance, controller.GetInputPort("assistance"))
         state, time, torque = map(controller.GetOutputPort, ("desired_state", "sample_time", "torque"))
-        return Command(state, time, feedforward=torque)
+        return JointCommand(state, time, feedforward=torque)
 
     def _hanging_arms(self, subject: Subject) -> dict[str, float]:
         """Angles [rad] of hanging arms by joint, within its range; an arm that carries a load is straighter."""

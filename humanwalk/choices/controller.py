@@ -14,7 +14,7 @@ from humanwalk.walking.command import CommandParameters
 
 
 @dataclass(frozen=True)
-class Command:
+class JointCommand:
     """Ports that an actuation takes, joints in actuator order.
 
     Attributes:
@@ -81,7 +81,7 @@ class Controller(Protocol):
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
         """What the body starts from."""
 
-    def add_to(self, world: World) -> Command:
+    def add_to(self, world: World) -> JointCommand:
         """Add the controller's systems to the world's diagram.
 
         Raises:

@@ -10,7 +10,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body_units import scaled
-from humanwalk.choices.controller import Command
+from humanwalk.choices.controller import JointCommand
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
 from humanwalk.choices.world import World
@@ -81,7 +81,7 @@ class RecordedController:
         names = JointMap.of(kinematics_plant(subject)).names
         return StartPosture(dict(zip(names, motion.joints(0.0)[0].tolist(), strict=True)), motion.pelvis(0.0).X_WP)
 
-    def add_to(self, world: World) -> Command:
+    def add_to(self, world: World) -> JointCommand:
         """Add recording and support.
 
         Raises:
@@ -89,7 +89,7 @@ class RecordedController:
         """
         pelvis_reference, desired_state = self.add_reference(world)
         add_support(world, scaled(self.support, world.subject.scale), pelvis_reference)
-        return Command(desired_state)
+        return JointCommand(desired_state)
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         source = world.add("recording", RecordedPostureSource(self.motion(world.subject, world.terrain)))

@@ -12,7 +12,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body_units import scaled
-from humanwalk.choices.controller import Command
+from humanwalk.choices.controller import JointCommand
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
 from humanwalk.choices.world import World
@@ -119,7 +119,7 @@ class ThesisController:
         ankles = {LEGS[side].ankle: slope for side in SIDES}
         return StartPosture({name: joint.middle for name, joint in arm_joints(self.gait.arms).items()} | ankles)
 
-    def add_to(self, world: World) -> Command:
+    def add_to(self, world: World) -> JointCommand:
         """Add gait, arms, inverse_kinematics, support and, where enabled, the balance levels between them."""
         gait, arms, solver = self._add_source(world)
         targets, posture = gait.GetOutputPort("sole_targets"), arms.GetOutputPort("posture")
@@ -147,7 +147,7 @@ class ThesisController:
         world.builder.Connect(posture, solver.GetInputPort("posture"))
         add_support(world, balance.support, gait.GetOutputPort("pelvis_reference"))
         samples = ("desired_state", "sample_time", "previous_state", "previous_time")
-        return Command(**{name: solver.GetOutputPort(name) for name in samples})
+        return JointCommand(**{name: solver.GetOutputPort(name) for name in samples})
 
     def add_reference(self, world: World) -> tuple[OutputPort, OutputPort]:
         gait, arms, solver = self._add_source(world)

@@ -8,7 +8,7 @@ from pydrake.multibody.plant import ExternallyAppliedSpatialForceMultiplexer
 from pydrake.systems.framework import Diagram, DiagramBuilder, InputPort, OutputPort, System
 from pydrake.systems.primitives import Adder
 
-from humanwalk.choices.controller import Command
+from humanwalk.choices.controller import JointCommand
 from humanwalk.choices.exoskeleton import add_exoskeleton
 from humanwalk.choices.pushes import add_pushes
 from humanwalk.choices.sources import FROM_SCENARIO, Sources
@@ -78,7 +78,7 @@ def make_diagram(scenario: Scenario, visuals: bool = True, sources: Sources = FR
     return make_walker(scenario, visuals, sources) if scenario.controller.physics else make_playback(scenario)
 
 
-def _connect_command(builder: DiagramBuilder, command: Command) -> None:
+def _connect_command(builder: DiagramBuilder, command: JointCommand) -> None:
     """Connect a command with the actuators; a feedforward that it lacks becomes an input of the diagram."""
     actuators = builder.GetSubsystemByName("actuators")
     for name, port in command.ports.items():

@@ -12,7 +12,7 @@ from pydrake.systems.primitives import ConstantVectorSource
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.choices import ACTUATIONS, CONTACTS, CONTROLLERS, PdActuation, PointContact, ThesisController
-from humanwalk.choices.controller import Command
+from humanwalk.choices.controller import JointCommand
 from humanwalk.diagrams.walker import make_walker
 from humanwalk.numerics import Array
 from humanwalk.parameter_file import fields_of
@@ -67,7 +67,7 @@ class Statue(ThesisController):
         posture = world.add("statue", ConstantVectorSource(np.zeros(2 * n))).get_output_port()
         answer = world.add("answer", ConstantVectorSource([42.0]))
         answer.signals = (Signal("answer", answer.get_output_port(), ("statue.answer",)),)
-        return Command(posture)
+        return JointCommand(posture)
 
 
 @dataclass(frozen=True)
