@@ -564,3 +564,17 @@ def test_the_text_of_an_override_holds_one_value_and_no_other_field() -> None:
             load_scenario("thesis", {"duration": text})
     loaded = load_scenario("walk", {"pushes.given": "\n- time: 1.0\n- time: 2.0\n"})
     assert [push.time for push in loaded.pushes.given] == [1.0, 2.0]
+
+
+def test_untested_speeds_and_pushes_after_the_end_are_warnings() -> None:
+    scenario = load_scenario(
+        "walk",
+        {
+            "duration": "5",
+            "pushes.given": "[{time: 4.9}, {time: 5}, {time: 8}]",
+            "controller.balanced.command.points": "[{time: 1.0, forward: 2.1}]",
+        },
+    )
+    speed, *pushes = scenario.warnings
+    assert "2.1 m/s" in speed
+    assert pushes == [f"pushes.given: the push at {time} s comes after the end at 5 s" for time in (5, 8)]

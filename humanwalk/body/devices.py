@@ -120,6 +120,10 @@ class AnkleProsthesis:
     def applied(self, skeleton: Skeleton) -> Skeleton:
         leg = LEGS[self.side]
         shank = skeleton.segment(leg.shank)
+        if shank.hidden:
+            raise ParameterError(
+                f"side: the {self.side.lower()} leg already has a prosthesis; allowed: one on each; remove one device"
+            )
         foot = [segment for segment in skeleton.segments if _hangs_on(skeleton, segment, shank)]
         lighter = self.foot_mass / sum(segment.mass for segment in foot)
         x, y, z = shank.com

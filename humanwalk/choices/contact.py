@@ -119,11 +119,11 @@ class AsperityContactModel(_DrakeContact, AsperityParameters):
         bodies = [plant.GetBodyByName(patch.body) for patch in patches]
         J = body_jacobians(plant, context, bodies)
         turned = [
-            body.EvalPoseInWorld(context).rotation() @ patch.p_BoQ_B.T
+            body.EvalPoseInWorld(context).rotation().matrix() @ patch.p_BoQ_B.T
             for body, patch in zip(bodies, patches, strict=True)
         ]
         R_SW = world.terrain.axes(np.zeros(2))
-        r, area = np.swapaxes(turned, 1, 2), np.array([patch.area for patch in patches])
+        r, area = np.array(turned).swapaxes(1, 2), np.array([patch.area for patch in patches])
         stable = largest_contact_step(
             plant.CalcMassMatrix(context),
             J,

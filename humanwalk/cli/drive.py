@@ -57,7 +57,7 @@ def drive_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     require_drivable(loaded)
-    for line in loaded.controller.untested:
+    for line in loaded.warnings:
         console.print(f"warning: {line}", soft_wrap=True)
     page = DrivePage(make_meshcat(live=True))
     runs: list[Run] = []

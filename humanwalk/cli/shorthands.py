@@ -161,17 +161,16 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
         noun: What the grammar calls a kind.
         grammar: How a text is written.
     """
-    words = text.strip().replace("_", " ")
     tag = _kind_of(text, kinds)
     end = f"allowed: {grammar} with {noun} one of {', '.join(kinds)}"
     if not tag:
-        near = did_you_mean("_".join(words.split()[:2]), tuple(kinds))
+        near = did_you_mean("_".join(text.replace("_", " ").split()[:2]), tuple(kinds))
         raise ParameterError(f"{option} {printable(text)}: no such kind; {end}; write one of them{near}")
     known = _fields(kinds[tag])
     own = [name for name in inspect.get_annotations(kinds[tag]) if name in known]
     first = next(name for name in (*own, *known) if "unit" in known[name].metadata)
     fields: dict[str, Any] = {}
-    for item in words[len(tag) :].split(","):
+    for item in text.strip()[len(tag) :].lstrip("_").split(","):
         said = [WORDS[word] for word in item.split() if word in WORDS]
         for name, value in said:
             _give(fields, name, value, f"{option} {text}")

@@ -18,7 +18,7 @@ from humanwalk.cli.common import (
     stdout,
 )
 from humanwalk.measures import ends
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, printable
 
 
 @app.command(
@@ -69,6 +69,11 @@ def walk(
     elif mapping is not None:
         raise ParameterError(f"--mapping {mapping}: no recording; allowed: with --follow FILE; name the recording")
     overrides = changes.overrides(scenario, recorded)
+    if recorded and overrides["controller"] != recorded["controller"]:
+        raise ParameterError(
+            f"--follow {printable(follow)}: --set controller replaces what follows the recording; allowed: one of the "
+            "two; leave one out, or add --balanced to walk without external force"
+        )
     if duration is not None:
         overrides["duration"] = repr(duration)
     if look is not None:

@@ -63,7 +63,7 @@ def walk_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     name = name or name_of(scenario)
-    for line in loaded.controller.untested:
+    for line in loaded.warnings:
         console.print(f"warning: {line}", soft_wrap=True)
     recording = make_meshcat() if replay else None
     shown = make_meshcat(live=True) if live else None

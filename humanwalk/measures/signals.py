@@ -55,4 +55,6 @@ def column_of(columns: Sequence[str], name: str) -> str:
 
 def matrix(signals: pa.Table, columns: Sequence[str]) -> Array:
     """Columns of a table as an array, shape (rows, len(columns))."""
+    if not columns:
+        return np.empty((signals.num_rows, 0))
     return np.column_stack([signals[column].to_numpy() for column in columns])

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from humanwalk.measures.ends import COMPLETED, CUT_SHORT
+from humanwalk.measures.ends import COMPLETED, CUT_SHORT, INTERRUPTED
 from humanwalk.quantity import ParameterError, file_paths
 from humanwalk.run.folder import Run
 from humanwalk.run.provenance import Provenance, file_hash, versions
@@ -48,12 +48,15 @@ def reproduce(run: Run, on_progress: Callable[[float], None] | None = None) -> R
 
     Raises:
         ParameterError: the scenario cannot be simulated, or its recording is gone.
+        KeyboardInterrupt: Ctrl-C ended the repetition.
     """
     scenario, then = run.scenario, run.summary["provenance"]
     notes = list(_changes(run, then))
     last = float(run.time[-1])
     cut_short = run.summary["end"] in CUT_SHORT
     again = simulate(replace(scenario, duration=last) if cut_short and last > 0 else scenario, on_progress=on_progress)
+    if again.end == INTERRUPTED:
+        raise KeyboardInterrupt
     # The repetition of a run that was cut short completes its shorter duration.
     end = run.summary["end"] if cut_short and again.end == COMPLETED else again.end
     old, new = run.signals, again.signals

@@ -72,7 +72,8 @@ class CommandParameters:
         for earlier, later in pairwise(times):
             if later <= earlier:
                 raise ParameterError(
-                    f"points: time {later:g} comes after {earlier:g}; allowed: increasing times; sort the points"
+                    f"points: time {later:g} comes after {earlier:g}; allowed: increasing times; give each time once, "
+                    "in order"
                 )
 
     @property

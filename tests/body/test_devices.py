@@ -115,6 +115,16 @@ def test_a_segment_carries_one_frame(second: HipExoskeleton) -> None:
     assert len(Subject(devices=(left, right)).assistance) == 2
 
 
+def test_a_leg_has_one_prosthesis() -> None:
+    left, right = AnkleProsthesis(side="Left"), AnkleProsthesis(side="Right")
+    with pytest.raises(
+        ParameterError, match=r"^subject\.ankle_prosthesis\.side: the left leg already has a prosthesis;"
+    ):
+        _ = Subject(devices=(left, right, left)).skeleton
+    both = Subject(devices=(left, right)).skeleton
+    assert all(both.segment(LEGS[side].shank).hidden for side in ("Right", "Left"))
+
+
 def test_the_walkers_model_lacks_an_unknown_exoskeleton() -> None:
     subject = Subject(devices=(AnkleExoskeleton(known=False),))
     assert subject.known_skeleton == Subject().skeleton != subject.skeleton

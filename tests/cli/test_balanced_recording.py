@@ -72,6 +72,24 @@ def test_a_recording_with_times_in_milliseconds_is_refused_by_its_time(tmp_path:
     assert "\n" not in str(error.value)
 
 
+def test_a_recording_is_shown_without_physics(humanwalk: Any, tmp_path: Path, recording: Path) -> None:
+    """Its whole length, so that there are steps to measure."""
+    code, _, errors = humanwalk("walk", "--follow", str(recording), "--kinematic", "-o", "shown", *QUICK)
+    assert code == 0, errors
+    summary = Run.open(tmp_path / "shown").summary
+    assert (summary["end"], summary["physics"], summary["cost_of_transport"]) == ("completed", False, None)
+
+
+@pytest.mark.parametrize("more", [(), ("--balanced",), ("--kinematic",)])
+def test_a_controller_that_replaces_the_recording_is_refused(
+    humanwalk: Any, tmp_path: Path, recording: Path, more: tuple[str, ...]
+) -> None:
+    code, _, errors = humanwalk("walk", "--follow", str(recording), *more, "--set", "controller=balanced", *QUICK)
+    assert code == 2
+    assert "--set controller replaces what follows the recording" in " ".join(errors.split())
+    assert not (tmp_path / "runs").exists()
+
+
 @pytest.mark.parametrize("options", [("--balanced",), ("--follow", "trial.csv", "--kinematic", "--balanced")])
 def test_without_a_recording_or_without_physics_nothing_can_be_balanced(
     humanwalk: Any, recording: Path, options: tuple[str, ...]

@@ -286,6 +286,13 @@ def test_impairments_and_devices_are_described() -> None:
     assert changed(impairment=["joint joint elbow, upper 90 deg"]).subject.impairments == (
         JointImpairment("elbow", upper=math.radians(90.0)),
     )
+    assert changed(impairment=["joint joint hip_flexion, both, upper 0 deg"]).subject.impairments == (
+        JointImpairment("hip_flexion", side="Both", upper=0.0),
+    )
+    assert (
+        changed(impairment=["stiff_knee left"]).subject.impairments
+        == changed(impairment=["stiff knee left"]).subject.impairments
+    )
     assert changed(device=["ankle prosthesis left", "hip exoskeleton 15 N m"]).subject.devices == (
         AnkleProsthesis(side="Left"),
         HipExoskeleton(15.0),

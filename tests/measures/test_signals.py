@@ -138,3 +138,7 @@ def test_matrix_keeps_the_order_of_the_columns_asked_for(recorded: tuple[Diagram
     both = matrix(table, ["com.z_m", "com.x_m"])
     np.testing.assert_array_equal(both[:, 0], table["com.z_m"].to_numpy())
     np.testing.assert_array_equal(both[:, 1], table["com.x_m"].to_numpy())
+
+
+def test_a_matrix_of_no_columns_has_the_rows_of_the_table() -> None:
+    assert matrix(pa.table({TIME: [0.0, 1.0, 2.0]}), []).shape == (3, 0)

@@ -1,7 +1,9 @@
 """A run states its origin; a re-run states whether the results match."""
 
 import json
+import os
 import shutil
+import signal
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -122,3 +124,11 @@ def test_run_with_signals_of_another_version_does_not_match(run: Run) -> None:
     result = reproduce(changed)
     assert not result.bits_agree
     assert "only one of them has: support.force_x_N, support.pull_x_N" in " ".join(result.notes)
+
+
+def test_an_interrupted_repetition_has_no_verdict(run: Run) -> None:
+    def interrupt(time: float) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(run, on_progress=interrupt)
