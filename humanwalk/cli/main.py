@@ -5,6 +5,8 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from typer import TyperException
+
 from humanwalk.cli import (
     compare_commands,
     drive_commands,
@@ -46,14 +48,33 @@ def run_command() -> None:
     with _own_log():
         try:
             try:
-                app()
+                code = app(standalone_mode=False)
             finally:
                 sys.stdout.flush()
-        except (ParameterError, OSError) as error:
-            text = error if isinstance(error, ParameterError) else _file_error(error)
-            console.print(f"humanwalk: {printable(text, MAX_MESSAGE)}", style="red", highlight=False, soft_wrap=True)
+        except (ParameterError, OSError, TyperException) as error:
+            # Without arguments typer prints the help, and there is no message.
+            if message := _message(error):
+                text = f"humanwalk: {printable(message, MAX_MESSAGE)}"
+                console.print(text, style="red", highlight=False, soft_wrap=True)
             discard(sys.stdout)
             sys.exit(BAD_INPUT)
+        # typer returns the exit code with which a command ended, or None.
+        sys.exit(code)
+
+
+def _message(error: Exception) -> str:
+    """What is printed of invalid input."""
+    match error:
+        case OSError():
+            return _file_error(error)
+        case TyperException():
+            # It names the option and what is wrong with it; the help has what is allowed.
+            context = getattr(error, "ctx", None)
+            command = "humanwalk" if context is None else context.command_path
+            message = error.format_message().rstrip(".")
+            return message and f"{message}; see {command} --help"
+        case _:
+            return str(error)
 
 
 def _file_error(error: OSError) -> str:

@@ -6,7 +6,9 @@ Never a traceback, never code that is executed, never a file outside the output 
 import io
 import json
 import os
+import re
 import resource
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -195,3 +197,28 @@ def test_recording_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.M
     assert code == 2
     assert len(printed.splitlines()) == 1, printed
     assert "root:" not in printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("walkk",), "No such command 'walkk'. Did you mean 'walk'?; see humanwalk --help"),
+        (("walk", "--nosuch"), "No such option: --nosuch; see humanwalk walk --help"),
+        (("walk", "--duration", "abc"), "'--duration': .*; see humanwalk walk --help"),
+        (("drive", "--port", "80000"), "'--port': .*65535; see humanwalk drive --help"),
+        (("study", "run", "terrain"), "Missing option '--output' / '-o'; see humanwalk study run --help"),
+    ],
+)
+def test_an_unknown_command_or_option_is_one_line(humanwalk: Any, arguments: tuple[str, ...], message: str) -> None:
+    code, output, errors = humanwalk(*arguments)
+    assert (code, output) == (2, "")
+    (line,) = errors.splitlines()
+    assert re.search(message.replace("?", r"\?"), line)
+
+
+@pytest.mark.parametrize("command", [(), ("study",)])
+def test_without_arguments_the_help_is_all_that_is_shown(command: tuple[str, ...]) -> None:
+    ended = subprocess.run([sys.executable, "-m", "humanwalk", *command], capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert "Usage" in ended.stdout
+    assert ended.stderr == ""
