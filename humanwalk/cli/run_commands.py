@@ -116,7 +116,8 @@ def plot(
     from humanwalk.run.folder import Run
     from humanwalk.view.plots import write_plots
 
-    written = write_plots(Run.open(run), only, format_)
+    with console.status("drawing"):
+        written = write_plots(Run.open(run), only, format_)
     for path in written:
         console.print(f"{path}", soft_wrap=True)
     if not written:
@@ -140,11 +141,13 @@ def report(
     from humanwalk.view.report import compare_run, terminal_tables, to_json, write_report
 
     opened = Run.open(run)
-    comparison = compare_run(opened)
+    with console.status("comparing with human gait"):
+        comparison = compare_run(opened)
     if json_:
         print(json.dumps(to_json(comparison), indent=2, allow_nan=False))
         return
-    path = write_report(opened, comparison)
+    with console.status("drawing"):
+        path = write_report(opened, comparison)
     for table in terminal_tables(comparison):
         stdout.print(table)
     console.print(f"{path}", soft_wrap=True)
@@ -168,7 +171,9 @@ def export(
     from humanwalk.run.folder import Run
 
     opened = Run.open(run)
-    for path in export_run(opened, to, folder, overwrite=overwrite):
+    with console.status("writing"):
+        written = export_run(opened, to, folder, overwrite=overwrite)
+    for path in written:
         console.print(f"{path}", soft_wrap=True)
     for force in forces_left_out(opened, to):
         console.print(f"{force}: not in these files; inverse dynamics will find it as residual forces", soft_wrap=True)
