@@ -109,6 +109,11 @@ def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTabl
     rows = ((number, _split(line, is_csv)) for number, line in lines if line.strip())
     number, names = next(rows, (0, []))
     _check_names(names, f"{name}: line {number}")
+    if is_csv and len(names) == 1:
+        raise ParameterError(
+            f"{name}: line {number}: one column, {brief(names[0])}; allowed: a time and angles; separate columns by "
+            "commas, and write decimals with a point"
+        )
     time_column = next((names.index(candidate) for candidate in TIME_NAMES if candidate in names), 0)
     data = array("d")
     for row, (number, cells) in enumerate(rows):

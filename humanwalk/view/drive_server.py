@@ -85,7 +85,7 @@ def served_drive(meshcat_url: str, status: Callable[[], Status], port: int = 0) 
     try:
         server = local_server(contents, drive_policy(meshcat_url), port)
     except OSError as error:
-        raise ParameterError(f"--port {port}: {error.strerror}; choose a free port") from None
+        raise ParameterError(f"--port {port}: {error.strerror}; allowed: a free port; choose another") from None
     with server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         try:

@@ -87,7 +87,8 @@ def compare_run(run: Run) -> Comparison:
         ended = f"ended with '{end}' at {run.summary['duration_s']:.2f} s" if fall is None else fall["description"]
         raise ParameterError(
             f"{run.path}: the run {ended}; allowed: a "
-            f"run that did not fall, with {MIN_STRIDES} strides of each leg; re-run with a shorter --duration"
+            f"run that did not fall, with {MIN_STRIDES} strides of each leg; choose another run, or end it "
+            "before the fall with --duration"
         )
     try:
         return compare(run.signals, run.scenario)

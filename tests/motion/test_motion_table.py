@@ -137,7 +137,7 @@ def test_unreadable_file_produces_a_one_line_error(tmp_path: Path) -> None:
         (f"time,{'a' * 200_000}\n0,1\n1,1\n", f"line 1 has over {MAX_LINE} characters"),
         (",".join(f"c{i}" for i in range(MAX_COLUMNS + 1)) + "\n", f"allowed: up to {MAX_COLUMNS}"),
         ("," * (MAX_LINE // 2), f"allowed: up to {MAX_COLUMNS}"),
-        ("time\n" + "".join(f"{i}\n" for i in range(MAX_ROWS + 1)), f"more than {MAX_ROWS} rows"),
+        ("time,a\n" + "".join(f"{i},0\n" for i in range(MAX_ROWS + 1)), f"more than {MAX_ROWS} rows"),
         ("time," + "x" * 1000 + "\n0,bad\n", "..."),
     ],
     ids=["cell", "name", "columns", "empty columns", "rows", "long name"],
@@ -146,6 +146,13 @@ def test_oversized_table_produces_a_short_error(tmp_path: Path, text: str, messa
     error = refusal(written(tmp_path, text))
     assert message in error
     assert len(error) < 500
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_another_separator_is_named_as_the_problem(tmp_path: Path, separator: str) -> None:
+    rows = (("time", "hip_flexion_r_deg"), ("0,00", "1,5"), ("0,01", "1,6"))
+    error = refusal(written(tmp_path, "".join(separator.join(row) + "\n" for row in rows)))
+    assert "separate columns by commas, and write decimals with a point" in error
 
 
 def test_oversized_file_is_not_read(tmp_path: Path) -> None:

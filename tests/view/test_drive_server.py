@@ -80,7 +80,7 @@ def test_a_port_in_use_is_refused_in_one_line(url: str) -> None:
     port = urlsplit(url).port
     assert port is not None
     with (
-        pytest.raises(ParameterError, match=rf"^--port {port}: .*; choose a free port$"),
+        pytest.raises(ParameterError, match=rf"^--port {port}: .*; allowed: a free port; choose another$"),
         served_drive(MESHCAT, lambda: START, port),
     ):
         pass
