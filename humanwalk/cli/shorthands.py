@@ -171,10 +171,11 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     first = next(name for name in (*own, *known) if "unit" in known[name].metadata)
     fields: dict[str, Any] = {}
     for item in text.strip()[len(tag) :].lstrip("_").split(","):
-        said = [WORDS[word] for word in item.split() if word in WORDS]
+        words = {word: WORDS[word] for word in item.split() if word in WORDS and WORDS[word][0] in known}
+        said = list(words.values())
         for name, value in said:
             _give(fields, name, value, f"{option} {text}")
-        rest = " ".join(word for word in item.split() if word not in WORDS)
+        rest = " ".join(word for word in item.split() if word not in words)
         if not rest or rest in dict(said):
             continue
         found = PART.fullmatch(rest)
