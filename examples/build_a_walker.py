@@ -18,6 +18,7 @@ from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.scenario import load_scenario
 from humanwalk.systems.balance_support import BalanceSupport
+from humanwalk.systems.following_view import keep_meshcat
 from humanwalk.systems.gait_spline_source import GaitSplineSource
 from humanwalk.systems.inverse_kinematics_solver import InverseKinematicsSolver
 from humanwalk.systems.pd_actuator_bank import PdActuatorBank
@@ -54,6 +55,7 @@ def main(duration: float = 3.0) -> float:
     builder.Connect(support.GetOutputPort("generalized_force"), plant.get_applied_generalized_force_input_port())
     meshcat = Meshcat(MeshcatParams(host="localhost"))
     MeshcatVisualizer.AddToBuilder(builder, world.scene_graph, meshcat)
+    keep_meshcat(meshcat)
 
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(duration)

@@ -29,6 +29,20 @@ AROUND = np.column_stack((np.linspace(-0.6, 0.6, 25), np.zeros(25)))
 """Points around the pelvis, along x, whose mean height the view follows [m]: about two steps of a walk or stairs."""
 
 
+_KEPT: list[Meshcat] = []
+"""See `keep_meshcat`."""
+
+
+def keep_meshcat(meshcat: Meshcat) -> None:
+    """Keep a Meshcat until the program ends.
+
+    Drake ends the program if a thread destroys a Meshcat that another thread has made. The garbage collector frees
+    diagrams, and what they show, in any thread.
+    """
+    if not any(meshcat is kept for kept in _KEPT):
+        _KEPT.append(meshcat)
+
+
 class FollowingView(LeafSystem):
     """Keeps the pelvis near Meshcat's origin, and draws forces as arrows.
 
@@ -46,6 +60,7 @@ class FollowingView(LeafSystem):
     def __init__(self, meshcat: Meshcat, frame_rate: float, terrain: Terrain) -> None:
         """Make the view of `frame_rate` frames per second."""
         super().__init__()
+        keep_meshcat(meshcat)
         self._meshcat, self._terrain = meshcat, terrain
         self._following = AbstractParameterIndex(self.DeclareAbstractParameter(Value[bool](True)))
         self._query_object = self.DeclareAbstractInputPort("query_object", Value(QueryObject()))

@@ -1,6 +1,8 @@
 """A simulation that is no longer used is freed, with every system of its diagram."""
 
 import gc
+import subprocess
+import sys
 from pathlib import Path
 from weakref import ref
 
@@ -66,3 +68,21 @@ def test_a_followed_recording_is_freed(kinematic: str, tmp_path: Path) -> None:
 
 def test_pictures_and_live_sources_are_freed() -> None:
     assert kept_systems(load_scenario("walk"), make_meshcat(), LIVE) == []
+
+
+def test_another_thread_may_free_what_a_meshcat_shows() -> None:
+    """Drake ends the program if it destroys the Meshcat, too."""
+    program = """
+import gc, threading
+from humanwalk.run.simulate import prepare
+from humanwalk.scenario import load_scenario
+from humanwalk.view.replay import make_meshcat
+gc.disable()
+prepare(load_scenario("walk"), make_meshcat()).simulator.Initialize()
+thread = threading.Thread(target=gc.collect)
+thread.start()
+thread.join()
+print("alive")
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "alive\n"), ended.stderr
