@@ -56,7 +56,7 @@ def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> No
 def _group_in(
     group: Any, part: str, below: str, name: str, field: dataclasses.Field[Any] | None, of_choices: bool
 ) -> Any:
-    """Return the mapping or list that stands at `part` of a group, and make it if there is none.
+    """Return the mapping or list at `part` of a group; add it to the group if it is missing.
 
     Args:
         group: Mapping or list; it is changed.
@@ -83,10 +83,9 @@ def _group_in(
 
 def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
     """The entries that a list has where a file does not name it."""
-    if field is None or field.default is dataclasses.MISSING:
-        return []
-    default = plain_value(field.default)
-    return default if isinstance(default, list) else []
+    default = dataclasses.MISSING if field is None else field.default
+    entries = [] if default is dataclasses.MISSING else plain_value(default)
+    return entries if isinstance(entries, list) else []
 
 
 def _index(entries: list[Any], part: str, name: str) -> int:

@@ -118,12 +118,12 @@ class AsperityContactModel(_DrakeContact, AsperityParameters):
         patches = [patch for side in SIDES for patch in sole_patches(world.subject.skeleton, side)]
         bodies = [plant.GetBodyByName(patch.body) for patch in patches]
         J = body_jacobians(plant, context, bodies)
-        turned = [
+        p_BoQ_W = [
             body.EvalPoseInWorld(context).rotation().matrix() @ patch.p_BoQ_B.T
             for body, patch in zip(bodies, patches, strict=True)
         ]
         R_SW = world.terrain.axes(np.zeros(2))
-        r, area = np.array(turned).swapaxes(1, 2), np.array([patch.area for patch in patches])
+        r, area = np.array(p_BoQ_W).swapaxes(1, 2), np.array([patch.area for patch in patches])
         stable = largest_contact_step(
             plant.CalcMassMatrix(context),
             J,

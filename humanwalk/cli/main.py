@@ -52,7 +52,6 @@ def run_command() -> None:
             finally:
                 sys.stdout.flush()
         except (ParameterError, OSError, TyperException) as error:
-            # Without arguments typer prints the help, and there is no message.
             if message := _message(error):
                 text = f"humanwalk: {printable(message, MAX_MESSAGE)}"
                 console.print(text, style="red", highlight=False, soft_wrap=True)
@@ -63,16 +62,13 @@ def run_command() -> None:
 
 
 def _message(error: Exception) -> str:
-    """What is printed of invalid input."""
+    """The message for invalid input; empty where typer has printed the help instead."""
     match error:
         case OSError():
             return _file_error(error)
         case TyperException():
-            # It names the option and what is wrong with it; the help has what is allowed.
-            context = getattr(error, "ctx", None)
-            command = "humanwalk" if context is None else context.command_path
-            message = error.format_message().rstrip(".")
-            return message and f"{message}; see {command} --help"
+            message, context = error.format_message().rstrip("."), getattr(error, "ctx", None)
+            return f"{message}; see {context.command_path} --help" if message and context else message
         case _:
             return str(error)
 

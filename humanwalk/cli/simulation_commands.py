@@ -72,7 +72,7 @@ def walk(
     if recorded and overrides["controller"] != recorded["controller"]:
         raise ParameterError(
             f"--follow {printable(follow)}: --set controller replaces what follows the recording; allowed: one of the "
-            "two; leave one out, or add --balanced to walk without external force"
+            "two; leave one out"
         )
     if duration is not None:
         overrides["duration"] = repr(duration)
@@ -104,8 +104,12 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
     from humanwalk.run.reproduce import reproduce as repeat
 
     opened = Run.open(run)
-    with console.status(f"simulating {opened.time[-1]:g} s again"):
-        result = repeat(opened)
+    try:
+        with console.status(f"simulating {opened.time[-1]:g} s again"):
+            result = repeat(opened)
+    except KeyboardInterrupt:
+        console.print("interrupted; no verdict")
+        raise typer.Exit(INTERRUPTED) from None
     for note in result.notes:
         console.print(note, soft_wrap=True)
     console.print(f"{run}: {result.verdict}", soft_wrap=True)

@@ -66,7 +66,7 @@ def recorded_gait(motion: RecordedMotion, subject: Subject, name: str) -> Record
         )
     time = np.arange(0.0, end, 1.0 / RATE)
     angles = motion.angles_at(time)
-    strides, cycles, ways, times = [], [], [], []
+    strides, cycles, distances = [], [], []
     for side in SIDES:
         hip, knee, _ = columns = [joints.names.index(joint) for joint in styled_joints(LEGS[side])]
         touchdowns = _touchdowns(_forward_reach(angles[:, hip], angles[:, knee], subject))
@@ -81,11 +81,10 @@ def recorded_gait(motion: RecordedMotion, subject: Subject, name: str) -> Record
         values = np.column_stack([np.interp(wanted, phase[inside], angles[inside, column]) for column in columns])
         cycles.append(values.reshape(-1, POINTS, len(columns)).mean(axis=0))
         strides.append(np.diff(time[touchdowns]))
-        begin, last = time[touchdowns[[0, -1]]]
-        times.append(last - begin)
-        ways.append(motion.pelvis(last).X_WP.translation()[0] - motion.pelvis(begin).X_WP.translation()[0])
-    stride = float(np.concatenate(strides).mean())
-    speed = float(sum(ways) / sum(times))
+        first, last = (motion.pelvis(time[row]).X_WP.translation()[0] for row in touchdowns[[0, -1]])
+        distances.append(last - first)
+    durations = np.concatenate(strides)
+    stride, speed = float(durations.mean()), float(sum(distances) / durations.sum())
     if not speed > 0.0:
         raise ParameterError(
             f"{printable(name)}: the pelvis moves at {speed:.2g} m/s; allowed: forward, along x; turn the recording"

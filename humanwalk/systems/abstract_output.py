@@ -14,23 +14,24 @@ def declare_abstract_output(
     calculate: Callable[[Context, AbstractValue], None],
     prerequisites: Collection[DependencyTicket] = (),
 ) -> OutputPort:
-    """Declare an abstract output port.
+    """Declare and return an abstract output port.
 
-    pydrake holds the function of such a port out of sight of the garbage collector. A method there would hold its
-    system for ever, and with it the diagram. Here the port holds the method weakly.
+    pydrake refers to the function of such a port where the garbage collector cannot see it. A method would keep its
+    system alive forever, and with it the diagram. The port therefore refers to the method weakly.
 
     Args:
         system: The system.
         name: Name of the port.
-        model: Of the port's values.
+        model: Model value of the port.
         calculate: Method of the system that sets the value.
         prerequisites: What the value depends on; all sources if empty.
     """
     method = WeakMethod(calculate)
 
-    def calculate_if_alive(context: Context, output: AbstractValue) -> None:
-        if (calculate := method()) is not None:
-            calculate(context, output)
+    def calculate_of_system(context: Context, output: AbstractValue) -> None:
+        bound = method()
+        assert bound is not None
+        bound(context, output)
 
     needs = set(prerequisites) or {system.all_sources_ticket()}
-    return system.DeclareAbstractOutputPort(name, model.Clone, calculate_if_alive, needs)
+    return system.DeclareAbstractOutputPort(name, model.Clone, calculate_of_system, needs)

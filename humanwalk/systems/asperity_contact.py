@@ -30,7 +30,7 @@ class AsperityContact(LeafSystem):
         state: plant state [q; v].
 
     Outputs:
-        contacts: what ContactStep returns, a Contacts.
+        contacts: `Contacts`, as `ContactStep` returns them.
         spatial_forces: list of ExternallyAppliedSpatialForce, for the plant's applied_spatial_force port.
         foot_forces: (8 f) as of FootForceObserver.
         friction_use: (f) as of FootForceObserver.

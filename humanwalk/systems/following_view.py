@@ -29,18 +29,17 @@ AROUND = np.column_stack((np.linspace(-0.6, 0.6, 25), np.zeros(25)))
 """Points around the pelvis, along x, whose mean height the view follows [m]: about two steps of a walk or stairs."""
 
 
-_KEPT: list[Meshcat] = []
+_KEPT: set[Meshcat] = set()
 """See `keep_meshcat`."""
 
 
 def keep_meshcat(meshcat: Meshcat) -> None:
     """Keep a Meshcat until the program ends.
 
-    Drake ends the program if a thread destroys a Meshcat that another thread has made. The garbage collector frees
-    diagrams, and what they show, in any thread.
+    Drake aborts the program if a Meshcat is destroyed in another thread than the one that made it. The garbage
+    collector may run in any thread, and frees a diagram together with its Meshcat.
     """
-    if not any(meshcat is kept for kept in _KEPT):
-        _KEPT.append(meshcat)
+    _KEPT.add(meshcat)
 
 
 class FollowingView(LeafSystem):

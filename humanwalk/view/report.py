@@ -86,9 +86,8 @@ def compare_run(run: Run) -> Comparison:
         fall = run.summary["fall"]
         ended = f"ended with '{end}' at {run.summary['duration_s']:.2f} s" if fall is None else fall["description"]
         raise ParameterError(
-            f"{run.path}: the run {ended}; allowed: a "
-            f"run that did not fall, with {MIN_STRIDES} strides of each leg; choose another run, or end it "
-            "before the fall with --duration"
+            f"{run.path}: the run {ended}; allowed: a run that did not fall, with {MIN_STRIDES} strides of each leg; "
+            "choose another run, or end it before the fall with --duration"
         )
     try:
         return compare(run.signals, run.scenario)

@@ -108,7 +108,7 @@ class PhaseTransitions:
         if state.swing_side in self._passive_ankles:
             # Nothing lifts its toes.
             toe_up = 0.0
-        # Before a weight shift both feet stood flat, also one that is behind.
+        # In a weight shift both feet are flat, even one that is behind.
         has_rolled = state.phase is Phase.DOUBLE_SUPPORT
         toes = foot_behind(state, command, self._parameters).toes[0] if has_rolled else 0.0
         sole = self._footholds.sole

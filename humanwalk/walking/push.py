@@ -12,7 +12,7 @@ RANDOM_PUSHES = 5
 """Stream of the seed from which random pushes are drawn."""
 
 ROUNDING = 1e-9
-"""Error of simulated times [s], which are sums of steps: a push does not act a step longer by it."""
+"""Rounding error of simulated times [s]. It must not make a push a step longer or shorter."""
 
 MIN_RANDOM_INTERVAL = 0.1
 """Smallest mean time between random pushes [s]: the duration of a push."""
@@ -26,7 +26,7 @@ class Push:
     """When the force begins."""
 
     duration: float = quantity(0.1, "s", 0.001, 60.0)
-    """How long it lasts, in whole steps of physics: rounded to the nearest number of them, at least one."""
+    """How long it lasts. It is rounded to whole steps of the simulation, at least one; the impulse is kept."""
 
     impulse: float = quantity(30.0, "N s", 0.0, 1000.0)
     """Force times duration."""

@@ -56,6 +56,6 @@ def test_the_port_outlives_the_variable_of_its_system_in_a_diagram() -> None:
 
 
 def test_the_port_does_not_keep_its_system() -> None:
-    system = weakref.ref(Doubled())
+    reference = weakref.ref(Doubled())
     gc.collect()
-    assert system() is None
+    assert reference() is None, "the port keeps the system alive"

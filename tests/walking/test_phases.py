@@ -174,8 +174,9 @@ def test_steps_to_a_curb_are_careful(height: float) -> None:
     assert state.timing.step == pytest.approx(TIMING.step + state.caution * (CAREFUL - TIMING.step))
 
 
-def test_the_last_step_ends_in_standing() -> None:
-    state = advance(PHASES, in_single_support(0.95), landed_at(-0.1j), STOP)
+@pytest.mark.parametrize("progress", [0.95, 1.01])
+def test_the_last_step_ends_in_standing(progress: float) -> None:
+    state = advance(PHASES, in_single_support(progress), landed_at(-0.1j), STOP)
     assert (state.phase, state.steps, state.early) == (Phase.STAND, 0, 0.0)
 
 
