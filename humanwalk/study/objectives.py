@@ -76,7 +76,9 @@ class Bound(Measured):
     """Cost per unit of the measure beyond a limit."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError unless low <= high."""
+        """Raise ParameterError without a limit, and unless low <= high."""
+        if self.low <= -NO_LIMIT and self.high >= NO_LIMIT:
+            raise ParameterError("low: no limit, and high has none; allowed: low, high or both; write one of them")
         if self.low > self.high:
             raise ParameterError(f"low: {self.low:g} is above high; allowed: up to {self.high:g}; swap them")
 
@@ -84,7 +86,7 @@ class Bound(Measured):
     def allowed(self) -> str:
         """The allowed range as text."""
         low, high = (f"{limit:g}" if abs(limit) < NO_LIMIT else "" for limit in (self.low, self.high))
-        return f"{low} to {high}" if low and high else f"from {low}" if low else f"up to {high}" if high else "any"
+        return f"{low} to {high}" if low and high else f"from {low}" if low else f"up to {high}"
 
     def violation(self, value: float) -> float:
         """Distance from the allowed range; 0 within."""

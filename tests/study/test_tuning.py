@@ -94,6 +94,12 @@ def test_shipped_tunings_are_valid_and_survive_writing(name: str, tmp_path: Path
         ({"objectives": "{survived: {runs: {case: wlak}}}"}, "objectives.survived.runs: no run of a trial has .*wlak"),
         ({"bounds": "{cost_of_transport: {high: 1.0}}"}, "bounds.cost_of_transport: is an objective too; allowed: "),
         ({"bounds": "{survived: {low: 1.0, high: 0.5}}"}, "bounds.survived.low: 1 is above high; allowed: up to 0.5"),
+        (
+            {"bounds": "{survived: {}}"},
+            "bounds.survived.low: no limit, and high has none; allowed: low, high or both; write one",
+        ),
+        ({"bounds": "{survived: {low: -1.0e+9, penalty: 2.0}}"}, "bounds.survived.low: no limit, and high has none"),
+        ({"bounds": "{survived: {low: -.inf, high: .inf}}"}, "bounds.survived.low: no limit, and high has none"),
         ({"runs": "{scenario: walk, keep: runs}", "objectives": "{survived: {}}"}, "runs.keep: .*; allowed: summary"),
         (
             {
