@@ -100,7 +100,7 @@ class Study:
         """The scenario of a run.
 
         Raises:
-            ParameterError: a value that cannot be used; the message begins with the point.
+            ParameterError: a value that cannot be used; the message begins with the values of the point, if it has any.
         """
         try:
             data, values = dict(self.base), self.overrides(point)
@@ -110,7 +110,7 @@ class Study:
             return rebuild(self.scenario, {name: data[name] for name in data if name in sections})
         except ParameterError as error:
             at = ", ".join(f"{name}: {shown(value)}" for name, value in point.items())
-            raise ParameterError(f"point ({printable(at, 300)}): {error}") from None
+            raise ParameterError(f"point ({printable(at, 300)}): {error}" if at else str(error)) from None
 
     def scenarios(self) -> Iterator[Scenario]:
         """The scenarios of all points in order; see `scenario_at`."""

@@ -130,6 +130,8 @@ def _claim(folder: Path, tuning: Tuning) -> None:
                 f"-o {printable(folder)}: holds another tuning; allowed: a new folder, or that of the same tuning, "
                 "which resumes; choose another"
             )
+        if (folder / TRIALS).exists():
+            _rows(folder, tuning)
     else:
         with file_errors(folder, WRITABLE):
             if any(not entry.name.startswith(".") for entry in folder.iterdir()):
@@ -156,12 +158,20 @@ def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:
         ParameterError: the folder holds no tuning, or its table was changed.
     """
     tuning = read_tuning(folder)
+    return tuning, _rows(folder, tuning)
+
+
+def _rows(folder: Path, tuning: Tuning) -> list[Row]:
     path = require_inside(folder, folder / TRIALS)
-    return tuning, _checked(path, tuning, journal.read(path, trial_columns(tuning), MAX_TRIALS))
+    return _checked(path, tuning, journal.read(path, trial_columns(tuning), MAX_TRIALS))
 
 
 def _checked(path: Path, tuning: Tuning, table: pa.Table) -> list[Row]:
-    """The rows of a table; a value of an objective or bound may be missing, nothing else, and numbers are in range."""
+    """The rows of a table; a value of an objective or bound may be missing, nothing else, and numbers are in range.
+
+    Raises:
+        ParameterError: a cell cannot be used, or the tuning has fewer trials than the table.
+    """
     ranges = {f"parameters.{name}": (limits.low, limits.high) for name, limits in tuning.parameters.items()}
     for name in table.column_names:
         column, (low, high) = table[name], ranges.get(name, (-MAX_MAGNITUDE, MAX_MAGNITUDE))
@@ -173,6 +183,12 @@ def _checked(path: Path, tuning: Tuning, table: pa.Table) -> list[Row]:
                 f"{high:g}; allowed: the file as humanwalk tune wrote it; restore it, or choose another folder with -o"
             )
     rows: list[Row] = table.to_pylist()
+    done = rows[-1][TRIAL] + 1 if rows else 0
+    if done > tuning.trials:
+        raise ParameterError(
+            f"trials: {tuning.trials} is less than the {done} of {printable(path)}; allowed: from {done} on; write "
+            f"trials: {done}"
+        )
     return rows
 
 

@@ -115,7 +115,7 @@ def test_files_that_are_no_study_are_refused_in_one_line(text: str, match: str) 
         ("factors: {duration: [1, -1], seed: [4]}", r"point \(duration: -1, seed: 4\): duration: -1 is out of range"),
         ("factors: {pushes.given.1.time: [1]}", "pushes.given.1: no such entry; allowed: 0 to 0"),
         ("factors: {controller.balanced.control_period: [0.006]}", "controller is 'thesis'"),
-        ("set: {duration: -1}", r"point \(\): duration: -1"),
+        ("set: {duration: -1}", r"^duration: -1 is out of range"),
         ("set: {duration.x: -1}", r"duration is 15\.0"),
         ("factors: {seed: {uniform: {}}}", "latin_hypercube or sobol"),
         ("factors: {seed: {range: {}}}", "0.0 is not a whole number"),

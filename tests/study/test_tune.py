@@ -142,6 +142,26 @@ def test_more_trials_continue_a_tuning(tmp_path: Path, one_worker: Client) -> No
     assert rows(tmp_path / "parts") == rows(tmp_path / "whole")
 
 
+def test_fewer_trials_than_are_done_are_refused(tmp_path: Path, one_worker: Client) -> None:
+    tune(tuning(trials="5"), tmp_path, one_worker, function=sphere)
+    refusal = rf"^trials: 4 is less than the 5 of .*{TRIALS}; allowed: from 5 on; write trials: 5$"
+    with pytest.raises(ParameterError, match=refusal):
+        tune(tuning(trials="4"), tmp_path, one_worker, function=sphere)
+    assert read_trials(tmp_path)[0].trials == len(rows(tmp_path)) == 5
+    # Nor does an edit of its own file lose count.
+    file = tmp_path / "tuning.yaml"
+    file.write_text(file.read_text().replace("trials: 5", "trials: 4"))
+    with pytest.raises(ParameterError, match=refusal):
+        read_trials(tmp_path)
+
+
+def test_fewer_trials_than_were_planned_end_a_tuning(tmp_path: Path, one_worker: Client) -> None:
+    tune(tuning(trials="9"), tmp_path, one_worker, should_stop=lambda: len(rows(tmp_path)) >= 5, function=sphere)
+    done = rows(tmp_path)
+    tune(tuning(trials=str(len(done))), tmp_path, one_worker, function=broken)
+    assert rows(tmp_path) == done
+
+
 def test_a_line_that_was_cut_is_repeated(tmp_path: Path, one_worker: Client) -> None:
     wanted = tuning(trials="9")
     tune(wanted, tmp_path, one_worker, function=sphere)
