@@ -109,7 +109,9 @@ def show(
     study: Annotated[Path, typer.Argument(help="Folder of a study, finished or not.")],
     measure: Annotated[
         list[str],
-        typer.Option(metavar="NAME", help="Column of the table to show instead of the usual ones; several times."),
+        typer.Option(
+            metavar="NAME", help="Measured number of the table to show instead of the usual ones; several times."
+        ),
     ] = [],  # noqa: B006
     figures: Annotated[
         str | None, typer.Option(metavar="FORMAT", help="Also write the figures into its plots: png, svg or pdf.")

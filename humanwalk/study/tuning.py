@@ -153,8 +153,8 @@ def _require_measure(place: str, measure: str) -> None:
     numbers |= OF_RUNS.keys()
     if measure not in numbers:
         raise ParameterError(
-            f"{place}: {measure} is not a measure of a run that repeats; allowed: columns of the table of a study, and "
-            f"{', '.join(OF_RUNS)}{did_you_mean(measure, tuple(numbers))}"
+            f"{place}: {measure} is not a measure of a run that repeats; allowed: measured numbers in the table of a "
+            f"study, and {', '.join(OF_RUNS)}{did_you_mean(measure, tuple(numbers))}"
         )
 
 
