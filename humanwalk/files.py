@@ -96,9 +96,14 @@ def file_of(folder: Path, name: str, kind: str, command: str) -> Path:
 
 
 def require_new(path: Path, overwrite: bool) -> None:
-    """Raise ParameterError for a file of the user that is there already, unless it may be replaced."""
+    """Raise ParameterError, before the work that fills it, for a file that cannot be written, and for one of the user
+    that is there already, unless it may be replaced.
+    """
     with file_errors(path, WRITABLE):
-        found = path.is_file()
+        found = path.exists()
+        if found and not path.is_file():
+            raise ParameterError(f"-o {printable(path)}: a folder or device; allowed: a file; choose another name")
+        _require_writable(path.parent)
     if found and not overwrite:
         raise ParameterError(
             f"-o {printable(path)}: is there already; allowed: a new file, or any with --overwrite; choose another name"
@@ -177,9 +182,14 @@ def make_folder(path: Path) -> list[Path]:
         str(path).encode()
         made = [folder for folder in (path, *path.parents) if not folder.exists()]
         path.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path, prefix="." + "x" * TEMPORARY_NAME):
-            pass
+        _require_writable(path)
     return made
+
+
+def _require_writable(folder: Path) -> None:
+    """Raise OSError unless files can be made in a folder."""
+    with tempfile.NamedTemporaryFile(dir=folder, prefix="." + "x" * TEMPORARY_NAME):
+        pass
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from humanwalk.cli.common import (
     require_look,
     stdout,
 )
-from humanwalk.files import WRITABLE, file_errors, require_new
+from humanwalk.files import require_new
 from humanwalk.quantity import ParameterError, tag_of
 
 if TYPE_CHECKING:
@@ -121,12 +121,6 @@ def bench(
         stdout.print(comparison_table(*map(read_result, compare)))
         return
     if json_file is not None:
-        with file_errors(json_file, WRITABLE):
-            found_folder = json_file.parent.is_dir()
-        if not found_folder:
-            raise ParameterError(
-                f"--output {json_file}: no such folder; allowed: a file in an existing folder; make it"
-            )
         require_new(json_file, overwrite)
     overrides = {"duration": repr(duration)} | overrides_of(set_)
     found: BenchResult | None = None

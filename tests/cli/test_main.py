@@ -427,8 +427,29 @@ def test_failed_bench_keeps_previous_results(humanwalk: Any, measured_until: Any
     assert list(read_result(tmp_path / "new.json").scenarios) == ["stand"]
 
 
-def test_bench_into_a_missing_folder_is_refused_before_it_measures(refusal: Any) -> None:
-    assert "none/new.json: no such folder" in refusal("bench", "stand", "--duration", "3600", "-o", "none/new.json")
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("none/x.json", "none/x.json: No such file or directory; allowed: a folder that you may write to"),
+        ("file/x.json", "file/x.json: Not a directory; allowed: a folder that you may write to"),
+        ("folder", "-o folder: a folder or device; allowed: a file; choose another name"),
+        ("/dev/null", "-o /dev/null: a folder or device; allowed: a file"),
+        ("/proc/x.json", "humanwalk: /proc/x.json: "),
+    ],
+)
+@pytest.mark.parametrize(
+    "command",
+    [("bench", "stand", "--duration", "3600"), ("video", "run"), ("compare", "run", "run"), ("schema", "scenario")],
+    ids=str,
+)
+def test_a_file_that_cannot_be_written_is_refused_before_the_work(
+    refusal: Any, tmp_path: Path, command: tuple[str, ...], name: str, said: str
+) -> None:
+    if name.startswith("/proc") and not os.path.isdir("/proc"):
+        pytest.skip("no /proc on this system")
+    (tmp_path / "file").touch()
+    (tmp_path / "folder").mkdir()
+    assert said in refusal(*command, "-o", name, "--overwrite")
 
 
 def test_bench_compares_only_its_own_files(refusal: Any, tmp_path: Path) -> None:
