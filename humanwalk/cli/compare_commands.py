@@ -7,6 +7,7 @@ import typer
 
 from humanwalk.cli.common import SHOW, OverwriteOption, app, console, stdout
 from humanwalk.files import require_new
+from humanwalk.quantity import ParameterError, printable
 
 
 @app.command(
@@ -28,7 +29,11 @@ def compare(
     from humanwalk.run.folder import Run
     from humanwalk.view.compare import difference_rows, falls, measure_rows, names_of, write_comparison
 
-    if page and output is not None:
+    if output is not None:
+        if not page:
+            raise ParameterError(
+                f"-o {printable(output)}: no page with --no-page; allowed: one of the two; leave one out"
+            )
         require_new(output, overwrite)
     path = output or Path("comparison.html")
     opened = [Run.open(run) for run in runs]

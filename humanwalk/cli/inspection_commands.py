@@ -24,6 +24,11 @@ from humanwalk.quantity import ParameterError, tag_of
 if TYPE_CHECKING:
     from humanwalk.bench.result import BenchResult
 
+BENCH_DURATION = 2.5
+"""Simulated time of each scenario of a benchmark unless --duration is given [s]."""
+
+BENCH_REPEATS = 2
+
 
 @app.command(
     rich_help_panel=INSPECT,
@@ -101,8 +106,10 @@ def bench(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
     ] = None,
-    duration: Annotated[float, typer.Option(help="Simulated time of each scenario [s].")] = 2.5,
-    repeats: Annotated[int, typer.Option(min=1, help="Number of measurements of each scenario, taken by turns.")] = 2,
+    duration: Annotated[float, typer.Option(help="Simulated time of each scenario [s].")] = BENCH_DURATION,
+    repeats: Annotated[
+        int, typer.Option(min=1, help="Number of measurements of each scenario, taken by turns.")
+    ] = BENCH_REPEATS,
     json_file: Annotated[
         Path | None, typer.Option("--output", "-o", help="JSON file to write, updated after every repeat.")
     ] = None,
@@ -118,6 +125,13 @@ def bench(
     from humanwalk.scenario import shipped_scenarios
 
     if compare is not None:
+        others = {"SCENARIO": names, "-o": json_file, "--overwrite": overwrite, "--set": set_}
+        others |= {"--duration": duration != BENCH_DURATION, "--repeats": repeats != BENCH_REPEATS}
+        if given := [name for name, value in others.items() if value]:
+            raise ParameterError(
+                f"--compare: measures nothing, and {', '.join(given)} would be ignored; allowed: two files alone; "
+                "leave out the rest"
+            )
         stdout.print(comparison_table(*map(read_result, compare)))
         return
     if json_file is not None:

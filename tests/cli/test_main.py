@@ -364,6 +364,11 @@ def test_a_name_that_no_file_can_have_is_named_in_the_error(refusal: Any, comman
     assert "File name too long; allowed: a folder that you may write to" in message
 
 
+def test_a_comparison_without_page_is_not_written(refusal: Any) -> None:
+    line = refusal("compare", "run", "run", "--no-page", "-o", "x.html")
+    assert "-o x.html: no page with --no-page; allowed: one of the two; leave one out" in line
+
+
 # bench.
 
 
@@ -450,6 +455,20 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(
     (tmp_path / "file").touch()
     (tmp_path / "folder").mkdir()
     assert said in refusal(*command, "-o", name, "--overwrite")
+
+
+@pytest.mark.parametrize(
+    ("more", "named"),
+    [
+        (("stand",), "SCENARIO"),
+        (("-o", "x.json"), "-o"),
+        (("--set", "seed=1", "--repeats", "3"), "--set, --repeats"),
+        (("--duration", "1", "--overwrite"), "--overwrite, --duration"),
+    ],
+)
+def test_bench_does_not_measure_while_it_compares(refusal: Any, more: tuple[str, ...], named: str) -> None:
+    line = refusal("bench", "--compare", "old.json", "new.json", *more)
+    assert f"--compare: measures nothing, and {named} would be ignored; allowed: two files alone" in line
 
 
 def test_bench_compares_only_its_own_files(refusal: Any, tmp_path: Path) -> None:
