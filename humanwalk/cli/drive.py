@@ -59,6 +59,10 @@ def drive_and_write(
     require_drivable(loaded)
     for line in loaded.warnings:
         console.print(f"warning: {line}", soft_wrap=True)
+    first = output.absolute() if output else RUNS / NAME
+    # Refused before there is a page; each walk makes its folder anew.
+    with run_folder(output, first, loaded):
+        pass
     page = DrivePage(make_meshcat(live=True))
     runs: list[Run] = []
     with served_drive(page.meshcat.web_url(), lambda: page.status, port) as url:
@@ -66,7 +70,6 @@ def drive_and_write(
         if browser:
             # A text browser in this terminal does not return until it is closed.
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
-        first = output.absolute() if output else RUNS / NAME
         ended = Ended.RESET
         try:
             while ended is not Ended.INTERRUPT:

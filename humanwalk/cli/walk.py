@@ -67,10 +67,10 @@ def walk_and_write(
         console.print(f"warning: {line}", soft_wrap=True)
     recording = make_meshcat() if replay else None
     shown = make_meshcat(live=True) if live else None
-    if shown is not None:
-        console.print(f"live at {shown.web_url()}")
     try:
         with run_folder(output, RUNS / name, loaded) as path:
+            if shown is not None:
+                console.print(f"live at {shown.web_url()}")
             _simulate_and_write(loaded, name, path, recording, shown, checkpoint_period, console)
     except RuntimeError:
         if shown is None or not is_lost(shown):

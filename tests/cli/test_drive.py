@@ -109,3 +109,15 @@ def test_a_recording_without_physics_is_refused_before_anything_is_written(drive
     with pytest.raises(ParameterError, match=r"^drive: a recording without physics"):
         drive(overrides=recorded)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_holds_files_is_refused_before_there_is_a_page(
+    humanwalk: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "make_meshcat", lambda **options: pytest.fail("a page"))
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "work").touch()
+    code, _, errors = humanwalk("drive", "-o", "mine", "--no-browser")
+    assert code == 2
+    (line,) = errors.splitlines()
+    assert line.startswith("humanwalk: -o mine: holds files already; allowed: a new or empty folder")

@@ -51,3 +51,12 @@ def test_a_live_view_that_is_lost_before_the_start_leaves_nothing(
     assert code == 2
     assert "the live view was lost" in errors
     assert not (tmp_path / "run").exists()
+
+
+def test_a_folder_that_holds_files_is_refused_before_the_address_is_shown(humanwalk: Any, tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "work").touch()
+    code, _, errors = humanwalk("walk", "thesis", "--meshcat", "-o", "mine")
+    assert code == 2
+    (line,) = errors.splitlines()
+    assert line.startswith("humanwalk: -o mine: holds files already; allowed: a new or empty folder")
