@@ -162,7 +162,11 @@ def export(
     to: Annotated[str, typer.Option("--to", help="opensim, c3d, csv or mat.")],
     folder: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Folder to write into. Default: one in the run's, named by the format."),
+        typer.Option(
+            "--output",
+            "-o",
+            help="Folder to write into. Default: one in the run's, named by the format, whose files are replaced.",
+        ),
     ] = None,
     overwrite: OverwriteOption = False,
 ) -> None:
