@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
-from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, range_text, tag_of
+from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
 from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
@@ -41,6 +41,20 @@ def located(text: str, name: str, replaced: Collection[str] = ()) -> Iterator[No
         if line is None:
             raise
         raise ParameterError(f"{name}, line {line}: {error}") from None
+
+
+def read_fields(path: Path) -> str:
+    """The text of a file that somebody wrote to be used: a scenario, study or tuning.
+
+    Raises:
+        ParameterError: it cannot be read, or has no line but comments.
+    """
+    text = read_text(path, MAX_FILE_SIZE)
+    if all(line.partition("#")[0].strip() in ("", "---") for line in text.splitlines()):
+        raise ParameterError(
+            f"{printable(path)}: empty; allowed: one field or more, or {{}} for the defaults; write `field: value`"
+        )
+    return text
 
 
 def load_as[T](kind: type[T], path: Path) -> T:

@@ -27,9 +27,8 @@ from humanwalk.choices import (
     ThesisController,
 )
 from humanwalk.choices.start import StartParameters
-from humanwalk.files import read_text
 from humanwalk.notebook import html_table
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located
+from humanwalk.parameter_file import anchor_paths, build, dump, located, read_fields
 from humanwalk.parameter_override import override
 from humanwalk.quantity import ParameterError, choice, printable, quantity, tag_of
 from humanwalk.shipped_files import named_file, shipped_files
@@ -171,8 +170,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
         ParameterError: no such scenario, not a scenario, or a value that cannot be used; one line.
     """
     path = named_file("scenario", name_or_path, shipped_scenarios())
-    text = read_text(path, MAX_FILE_SIZE)
-    return parse_scenario(text, overrides, name=path.name, folder=path.parent)
+    return parse_scenario(read_fields(path), overrides, name=path.name, folder=path.parent)
 
 
 def parse_scenario(

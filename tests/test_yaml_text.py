@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from humanwalk.quantity import ParameterError
-from humanwalk.scenario import load_scenario
+from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.study.study import Study, load_study
+from humanwalk.study.tuning import load_tuning
 from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml
 
 TEXT = """\
@@ -79,3 +81,17 @@ def test_values_too_deep_for_what_visits_them_are_refused_in_one_line(text: str)
 
 def test_values_may_be_as_deep_as_is_allowed() -> None:
     assert read_yaml("a: " + "[" * (MAX_DEPTH - 1) + "1" + "]" * (MAX_DEPTH - 1), "mine")
+
+
+@pytest.mark.parametrize("text", ["", " \n", "# duration: 5\n\n  # terrain: plane", "---\n", "\ufeff"])
+def test_a_file_without_fields_is_refused_with_what_to_write(text: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    for load in (load_scenario, load_study, load_tuning):
+        with pytest.raises(ParameterError, match=r"mine.yaml: empty; allowed: .*; write `field: value`$"):
+            load(tmp_path / "mine.yaml")
+
+
+def test_an_empty_group_asks_for_the_defaults(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("{}  # the thesis' walk\n")
+    assert load_scenario(tmp_path / "mine.yaml") == Scenario()
+    assert load_study(tmp_path / "mine.yaml") == Study()

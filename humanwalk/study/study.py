@@ -19,8 +19,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
-from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, anchor_paths, build, dump, located, plain, rebuild
+from humanwalk.parameter_file import anchor_paths, build, dump, located, plain, read_fields, rebuild
 from humanwalk.parameter_override import replace_value
 from humanwalk.quantity import ParameterError, choice, choices_by_name, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
@@ -143,7 +142,7 @@ def load_study(name_or_path: str | Path) -> Study:
         ParameterError: no such study, not a study, or a value that cannot be used; one line.
     """
     path = named_file("study", name_or_path, shipped_studies())
-    return parse_study(read_text(path, MAX_FILE_SIZE), path.name, path.parent)
+    return parse_study(read_fields(path), path.name, path.parent)
 
 
 def parse_study(text: str, name: str = "study", folder: Path = Path()) -> Study:

@@ -19,8 +19,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from humanwalk.files import read_text
-from humanwalk.parameter_file import MAX_FILE_SIZE, build, dump, located
+from humanwalk.parameter_file import build, dump, located, read_fields
 from humanwalk.quantity import ParameterError, did_you_mean, quantity
 from humanwalk.scenario import Scenario
 from humanwalk.shipped_files import named_file, shipped_files
@@ -208,7 +207,7 @@ def load_tuning(name_or_path: str | Path) -> Tuning:
         ParameterError: no such tuning, not a tuning, or a value that cannot be used; one line.
     """
     path = named_file("tuning", name_or_path, shipped_tunings())
-    return parse_tuning(read_text(path, MAX_FILE_SIZE), path.name, path.parent)
+    return parse_tuning(read_fields(path), path.name, path.parent)
 
 
 def parse_tuning(text: str, name: str = "tuning", folder: Path = Path()) -> Tuning:
