@@ -15,6 +15,7 @@ from scipy.stats import truncnorm
 
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, did_you_mean, only, printable, quantity
+from humanwalk.yaml_text import shown
 
 MAX_LEVELS = 100_000
 
@@ -58,9 +59,12 @@ class Values(Factor):
     values: tuple[Any, ...] = only()
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for an empty list."""
+        """Raise ParameterError for an empty list, and for a value that comes twice: its runs would be the same."""
         if not self.values:
             raise ParameterError("no values; allowed: one or more; write a list of them")
+        for index, value in enumerate(self.values):
+            if value in self.values[:index]:
+                raise ParameterError(f"{shown(value)} comes twice; allowed: every value once; remove one")
 
     def levels(self) -> Sequence[Any]:
         return self.values

@@ -98,6 +98,8 @@ def test_distributions_have_no_levels(name: str) -> None:
     "make",
     [
         lambda: Values(()),
+        lambda: Values((1.0, 2.0, 1)),
+        lambda: Values(({"time": 1.0}, [], [], 3)),
         lambda: Range(1.0, 1.0),
         lambda: Range(math.nan, 1.0),
         lambda: Range(-1e308, 1e308),

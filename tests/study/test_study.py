@@ -89,6 +89,8 @@ def test_column_shows_the_scenarios_value_where_a_point_has_none() -> None:
         ("factor: {}", "did you mean factors"),
         ("factors: {seed: 3}", "factors.seed: 3 is unknown"),
         ("factors: {seed: []}", "factors.seed.values: no values"),
+        ("factors: {duration: [1, 2, 1.0]}", "factors.duration.values: 1.0 comes twice; allowed: every value once"),
+        ("factors: {contact: {values: [point, point]}}", "factors.contact.values: 'point' comes twice; allowed: "),
         ("factors: {seed: {seeds: {count: 0}}}", r"factors\.seed\.count: 0 is out of range"),
         ("factors: {duration: {rnge: {}}}", "did you mean range"),
         ("factors: {duration: {range: {low: 2, high: 1}}}", r"factors\.duration\.range\.low: 2 and high: 1"),
