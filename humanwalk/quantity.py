@@ -154,6 +154,11 @@ def did_you_mean(text: str, choices: Sequence[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
+def near_or_all(text: str, choices: Sequence[str]) -> str:
+    """End of an error message that counts many choices: the most similar one, else all of them."""
+    return did_you_mean(text, choices) or f": {', '.join(choices)}"
+
+
 def check(parameters: Any, path: str = "", fields: Container[str] | None = None) -> None:
     """Check every quantity of a tree of dataclasses.
 

@@ -12,7 +12,7 @@ from humanwalk.body.joint_map import ROUNDING, JointMap, pelvis_pose
 from humanwalk.body.plant import body_plant
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, did_you_mean, quantity, require_in_range
+from humanwalk.quantity import ParameterError, near_or_all, quantity, require_in_range
 from humanwalk.terrain import Terrain
 
 RATES = 1
@@ -80,7 +80,7 @@ def start_positions(
         if name not in joints.names:
             raise ParameterError(
                 f"start.joint_angles.{name}: no such joint; allowed: the {len(joints.names)} joints of the body"
-                f"{did_you_mean(name, joints.names)}"
+                f"{near_or_all(name, joints.names)}"
             )
     # An impaired joint may not reach the posture of the controller.
     theta = np.clip([posture.angles.get(name, 0.0) for name in joints.names], joints.lower, joints.upper)

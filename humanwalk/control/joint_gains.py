@@ -11,7 +11,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import group_of
 from humanwalk.body_units import REFERENCE_BODY, BodyScale
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, did_you_mean, quantity
+from humanwalk.quantity import ParameterError, near_or_all, quantity
 
 THESIS_ANKLE = (10000.0, 10.0)
 """kp [N m/rad] and kd [N m s/rad] of the ankle: the only gains that the thesis prints (Fig 4.8)."""
@@ -85,7 +85,7 @@ def joint_gains(
         if name not in joints.names:
             raise ParameterError(
                 f"gains.joints.{name}: no such joint; allowed: the {len(joints.names)} joints of the body"
-                f"{did_you_mean(name, joints.names)}"
+                f"{near_or_all(name, joints.names)}"
             )
         i = joints.names.index(name)
         kp[i], kd[i] = (gains.kp, gains.kd) * unit

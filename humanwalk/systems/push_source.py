@@ -10,7 +10,7 @@ from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlan
 from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import AbstractParameterIndex, BasicVector, Context, LeafSystem
 
-from humanwalk.quantity import ParameterError, did_you_mean
+from humanwalk.quantity import ParameterError, near_or_all
 from humanwalk.systems.abstract_output import declare_abstract_output
 from humanwalk.systems.signal import Signal, xyz
 from humanwalk.walking.push import Push, PushParameters, all_pushes
@@ -73,7 +73,7 @@ class PushSource(LeafSystem):
                 names = [self._plant.get_body(BodyIndex(i)).name() for i in range(1, self._plant.num_bodies())]
                 raise ParameterError(
                     f"pushes.body: {push.body}: no such body; allowed: the {len(names)} bodies of the model"
-                    f"{did_you_mean(push.body, names)}"
+                    f"{near_or_all(push.body, names)}"
                 )
         step = self._plant.time_step()
         return Pushes(tuple(push.in_steps(step) for push in pushes) if step > 0.0 else tuple(pushes))

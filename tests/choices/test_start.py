@@ -191,3 +191,13 @@ def test_taller_body_reaches_with_an_offset_that_the_reference_needs_too() -> No
     with pytest.raises(ParameterError, match=r"gait\.path\.offset"):
         require_thesis_reachable(load_scenario("thesis", overrides))
     require_thesis_reachable(load_scenario("thesis", overrides | {"subject.stature": "1.95"}))
+
+
+def test_an_unknown_joint_is_refused_with_the_nearest_or_all() -> None:
+    for name, end in (
+        ("HeadMotion", r"; did you mean Head_Motion\?"),
+        ("shin", ": RightLegFemurMotion, .*WristMotion"),
+    ):
+        wrong = Scenario(start=StartParameters(joint_angles={name: 0.1}))
+        with pytest.raises(ParameterError, match=f"{name}: no such joint; allowed: the 42 joints of the body{end}"):
+            start_positions(wrong)

@@ -67,6 +67,11 @@ def test_an_unknown_body_is_a_one_line_error_that_names_the_nearest(plant: Multi
     message = r"^pushes\.body: Rib: no such body; allowed: the 44 bodies of the model; did you mean Ribs\?$"
     with pytest.raises(ParameterError, match=message):
         PushSource(plant, PushParameters((Push(body="Rib"),)), seed=0)
+    message = (
+        r"^pushes\.body: sole: no such body; allowed: the 44 bodies of the model: Pelvis, .*_FootToes, .*, \w+_Hand$"
+    )
+    with pytest.raises(ParameterError, match=message):
+        PushSource(plant, PushParameters((Push(body="sole"),)), seed=0)
 
 
 @given(st.floats(0.01, 2.0), st.floats(0.1, 100.0), st.floats(-math.pi, math.pi))
