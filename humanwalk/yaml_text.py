@@ -5,6 +5,7 @@ import reprlib
 from typing import Any
 
 import yaml
+from yaml.reader import ReaderError
 
 from humanwalk.quantity import ParameterError, printable
 
@@ -63,6 +64,12 @@ def read_yaml(text: str, name: str) -> dict[str, Any]:
         data = yaml.load(text, Loader=_Loader)
     except ParameterError:
         raise
+    except ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        raise ParameterError(
+            f"{name}: not YAML at line {line}: the character {chr(error.character)!a}; allowed: printable text; remove "
+            "it, or restore the file"
+        ) from None
     except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RecursionError) as e:
         # PyYAML's constructors let these out of scalars that do not fit their tag, like !!int "".
         mark = getattr(e, "problem_mark", None)

@@ -95,3 +95,14 @@ def test_an_empty_group_asks_for_the_defaults(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("{}  # the thesis' walk\n")
     assert load_scenario(tmp_path / "mine.yaml") == Scenario()
     assert load_study(tmp_path / "mine.yaml") == Study()
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "character"),
+    [(3 * "\0", 1, r"'\x00'"), ("a: 1\nb: \0", 2, r"'\x00'"), ("\n\na: \x07", 3, r"'\x07'")],
+)
+def test_a_character_that_is_no_text_is_named_with_its_line(text: str, line: int, character: str) -> None:
+    with pytest.raises(ParameterError) as raised:
+        read_yaml(text, "mine")
+    problem = f"mine: not YAML at line {line}: the character {character}; allowed: printable text; "
+    assert str(raised.value).startswith(problem)
