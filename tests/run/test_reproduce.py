@@ -96,6 +96,13 @@ def test_other_measures_are_named(run: Run) -> None:
     assert result.verdict == "other measures"
 
 
+def test_another_end_is_another_measure_of_the_same_bits(run: Run) -> None:
+    result = reproduce(change_summary(run, lambda summary: summary.update(end="fell")))
+    assert (result.bits_agree, result.measures_agree) == (True, False)
+    assert "end: completed where it was fell" in result.notes
+    assert result.verdict == "the same bits in every signal, but other measures"
+
+
 def test_later_changes_are_noted(run: Run, caplog: pytest.LogCaptureFixture) -> None:
     changed = change_summary(
         run,
