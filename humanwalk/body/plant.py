@@ -1,15 +1,20 @@
 """The human inside a Drake MultibodyPlant."""
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 from pydrake.multibody.parsing import PackageMap, Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex
+from pydrake.systems.framework import Context
 
+from humanwalk.body.contact import ContactSphere
 from humanwalk.body.sdf import to_sdf
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
+from humanwalk.numerics import Array
 
 PACKAGE = "humanwalk"
 HUMAN_URL = "package://humanwalk/models/sdf/human.sdf"
@@ -56,3 +61,9 @@ def skeleton_plant(skeleton: Skeleton) -> MultibodyPlant:
     parser.AddModelsFromString(to_sdf(skeleton), "sdf")
     plant.Finalize()
     return plant
+
+
+def sole_points(plant: MultibodyPlant, context: Context, spheres: Sequence[ContactSphere]) -> Array:
+    """Return the lowest points of contact spheres, p_WQ [m], shape (spheres, 3)."""
+    centers = [plant.GetBodyByName(s.body).EvalPoseInWorld(context) @ np.array(s.center) for s in spheres]
+    return np.array(centers) - [(0.0, 0.0, s.radius) for s in spheres]

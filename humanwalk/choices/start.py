@@ -9,7 +9,7 @@ from pydrake.math import RigidTransform
 
 from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import ROUNDING, JointMap, pelvis_pose
-from humanwalk.body.plant import body_plant
+from humanwalk.body.plant import body_plant, sole_points
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError, near_or_all, quantity, require_in_range
@@ -100,9 +100,8 @@ def start_positions(
     pelvis = pelvis_pose(plant)
     q[pelvis] = [*posture.X_WP.rotation().ToQuaternion().wxyz(), *posture.X_WP.translation()]
     plant.SetPositions(context, q)
-    spheres = contact_spheres(subject.skeleton)
-    centers = np.array([plant.GetBodyByName(s.body).EvalPoseInWorld(context) @ np.array(s.center) for s in spheres])
-    clearance = centers[:, 2] - [s.radius for s in spheres] - terrain.height(centers[:, :2])
+    soles = sole_points(plant, context, contact_spheres(subject.skeleton))
+    clearance = soles[:, 2] - terrain.height(soles[:, :2])
     q[pelvis.stop - 1] += start.pelvis_lift - clearance.min()
     return q
 

@@ -12,7 +12,7 @@ from humanwalk.body import contact_spheres
 from humanwalk.body.joint_map import JointMap, pelvis_pose
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.opensim_names import COORDINATES, PELVIS_ROTATIONS, PELVIS_TRANSLATIONS, R_OW, SPINE_COORDINATES
-from humanwalk.body.plant import kinematics_plant
+from humanwalk.body.plant import kinematics_plant, sole_points
 from humanwalk.body.subject import Subject
 from humanwalk.motion.motion_table import MotionTable, brief, first_names, read_motion_table
 from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion, pelvis_rotation
@@ -254,7 +254,7 @@ class _Body:
         self._plant, self._joints = plant, joints
         self._context: Context = plant.CreateDefaultContext()
         self._pelvis = pelvis_pose(plant)
-        self._spheres = [(plant.GetBodyByName(s.body), s) for s in contact_spheres(subject.skeleton)]
+        self._spheres = contact_spheres(subject.skeleton)
 
     def sole_points(self, angles: Array, pelvis_angles: Array) -> Array:
         """Lowest points of the contact spheres relative to the pelvis, in W [m], shape (spheres, 3)."""
@@ -262,8 +262,7 @@ class _Body:
         q[self._joints.q] = angles
         q[self._pelvis] = [*pelvis_rotation(pelvis_angles).ToQuaternion().wxyz(), 0.0, 0.0, 0.0]
         self._plant.SetPositions(self._context, q)
-        centers = [body.EvalPoseInWorld(self._context) @ np.array(sphere.center) for body, sphere in self._spheres]
-        return np.array(centers) - [[0.0, 0.0, sphere.radius] for _, sphere in self._spheres]
+        return sole_points(self._plant, self._context, self._spheres)
 
 
 def _stance_path(body: _Body, terrain: Terrain, angles: Array, pelvis_angles: Array) -> Array:

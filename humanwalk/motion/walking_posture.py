@@ -9,7 +9,7 @@ from pydrake.systems.framework import Context
 from humanwalk.body import SIDES, contact_spheres
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.pelvic_plane import PELVIC_TILT
-from humanwalk.body.plant import skeleton_plant
+from humanwalk.body.plant import skeleton_plant, sole_points
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.gait.normative import SPEED_GROUPS
@@ -51,8 +51,5 @@ def _mean_height(body: Skeleton) -> float:
 
 def _height(body: Skeleton, plant: MultibodyPlant, context: Context) -> float:
     """Height of the center of mass above the lowest point of both soles [m]."""
-    lowest = min(
-        (plant.GetBodyByName(sphere.body).EvalPoseInWorld(context) @ np.array(sphere.center))[2] - sphere.radius
-        for sphere in contact_spheres(body)
-    )
+    lowest = sole_points(plant, context, contact_spheres(body))[:, 2].min()
     return float(plant.CalcCenterOfMassPositionInWorld(context)[2] - lowest)
