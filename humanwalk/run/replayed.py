@@ -14,13 +14,15 @@ from humanwalk.measures.signals import matrix
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.fall_picture import show_fall
 from humanwalk.run.folder import Run
-from humanwalk.systems.foot_signals import COLUMNS
-from humanwalk.systems.signal import state_columns, xyz
+from humanwalk.systems.balance_support import WRENCH_COLUMNS
+from humanwalk.systems.foot_signals import foot_columns
+from humanwalk.systems.push_source import FORCE_COLUMNS
+from humanwalk.systems.signal import state_columns
 
 FORCES: dict[str, tuple[str, ...]] = {
-    "foot_forces": tuple(f"{side.lower()}_foot.{column}" for side in SIDES for column in COLUMNS),
-    "push": xyz("push.force_", "N"),
-    "support_wrench": (*xyz("support.torque_", "N_m"), *xyz("support.force_", "N")),
+    "foot_forces": foot_columns(SIDES),
+    "push": FORCE_COLUMNS,
+    "support_wrench": WRENCH_COLUMNS,
 }
 """Columns of the forces that a picture shows, by output port."""
 

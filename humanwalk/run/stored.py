@@ -16,6 +16,9 @@ from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.provenance import Provenance, signals_hash
 from humanwalk.run.schema import read_json
 from humanwalk.scenario import Scenario
+from humanwalk.systems.body_observer import COM_COLUMNS, SOLE_COLUMNS
+from humanwalk.systems.foot_signals import foot_columns
+from humanwalk.systems.signal import floating_base
 
 MAX_ROWS = 200_000
 """Longest record [rows]: 16 minutes at the default signal period, 0.5 GB of numbers."""
@@ -87,16 +90,11 @@ def read_signals(path: Path, scenario: Scenario, sha256: str) -> pa.Table:
 
 def required_columns(physics: bool) -> set[str]:
     """Columns of every record: pelvis, joints, soles and center of mass; with physics also torques and forces."""
-    vectors = {"pelvis.": "m", "pelvis.velocity_": "m_s", "pelvis.angular_velocity_": "rad_s"}
-    vectors |= {"com.": "m", "com.velocity_": "m_s"} | {f"{side.lower()}_sole.": "m" for side in SIDES}
+    columns = {TIME, *floating_base("pelvis."), *SOLE_COLUMNS, *COM_COLUMNS}
     joint_signals = ["angle_rad", "velocity_rad_s"]
-    columns = {TIME, *(f"pelvis.quaternion_{axis}" for axis in "wxyz")}
     if physics:
-        feet = [f"{side.lower()}_foot." for side in SIDES]
+        columns |= set(foot_columns(SIDES))
         joint_signals += ["desired_angle_rad", "desired_velocity_rad_s", "torque_N_m", "saturated"]
-        vectors |= {f"{foot}force_": "N" for foot in feet} | {f"{foot}cop_": "m" for foot in feet}
-        columns |= {f"{foot}{name}" for foot in feet for name in ("free_moment_N_m", "loaded")}
-    columns |= {f"{prefix}{axis}_{unit}" for prefix, unit in vectors.items() for axis in "xyz"}
     return columns | {f"{joint.name}.{signal}" for joint in human().joints for signal in joint_signals}
 
 

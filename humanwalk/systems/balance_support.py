@@ -8,6 +8,8 @@ from humanwalk.body.joint_map import pelvis_pose, pelvis_velocity
 from humanwalk.control.balance_support import BalanceSupportParameters, support_wrench
 from humanwalk.systems.signal import Signal, xyz
 
+WRENCH_COLUMNS = (*xyz("support.torque_", "N_m"), *xyz("support.force_", "N"))
+
 
 class BalanceSupport(LeafSystem):
     """A spatial spring-damper that holds the pelvis on the walking reference, see `support_wrench`.
@@ -35,8 +37,7 @@ class BalanceSupport(LeafSystem):
         self._state = self.DeclareVectorInputPort("state", plant.num_multibody_states())
         self._wrench = self.DeclareVectorOutputPort("wrench", 6, self._calc_wrench)
         self.DeclareVectorOutputPort("generalized_force", plant.num_velocities(), self._calc_generalized_force)
-        columns = (*xyz("support.torque_", "N_m"), *xyz("support.force_", "N"))
-        self.signals = (Signal("support_wrench", self._wrench, columns),)
+        self.signals = (Signal("support_wrench", self._wrench, WRENCH_COLUMNS),)
 
     def _calc_wrench(self, context: Context, output: BasicVector) -> None:
         state, reference = self._state.Eval(context), self._reference.Eval(context)

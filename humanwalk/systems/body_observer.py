@@ -11,6 +11,9 @@ from humanwalk.numerics import Array
 from humanwalk.systems.load_observer import load_at
 from humanwalk.systems.signal import Signal, xyz
 
+SOLE_COLUMNS = tuple(column for side in SIDES for column in xyz(f"{side.lower()}_sole.", "m"))
+COM_COLUMNS = (*xyz("com.", "m"), *xyz("com.velocity_", "m_s"))
+
 
 class BodyObserver(LeafSystem):
     """Kinematics of the body from the plant's state.
@@ -44,10 +47,7 @@ class BodyObserver(LeafSystem):
         soles = self.DeclareVectorOutputPort("soles", 6, self._calc_soles)
         com = self.DeclareVectorOutputPort("com", 6, self._calc_com)
         self.DeclareVectorOutputPort("ankles", 30, self._calc_ankles)
-        self.signals = (
-            Signal("soles", soles, tuple(column for side in SIDES for column in xyz(f"{side.lower()}_sole.", "m"))),
-            Signal("com", com, (*xyz("com.", "m"), *xyz("com.velocity_", "m_s"))),
-        )
+        self.signals = (Signal("soles", soles, SOLE_COLUMNS), Signal("com", com, COM_COLUMNS))
 
     def _body_at(self, context: Context) -> Context:
         """The plant's context in the state of the input; its cache serves all outputs of one state."""

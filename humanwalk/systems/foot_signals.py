@@ -13,6 +13,11 @@ COLUMNS = (*xyz("force_", "N"), *xyz("cop_", "m"), "free_moment_N_m", "loaded")
 """Columns of one foot: see `FootForce`."""
 
 
+def foot_columns(sides: Sequence[Side]) -> tuple[str, ...]:
+    """Columns of the ground reactions on feet."""
+    return tuple(f"{side.lower()}_foot.{column}" for side in sides for column in COLUMNS)
+
+
 def declare_foot_signals(
     system: LeafSystem,
     sides: Sequence[Side],
@@ -37,8 +42,7 @@ def declare_foot_signals(
 
     forces = system.DeclareVectorOutputPort("foot_forces", 8 * len(sides), calc_forces)
     friction_use = system.DeclareVectorOutputPort("friction_use", len(sides), calc_friction_use)
-    names = [f"{side.lower()}_foot" for side in sides]
     return (
-        Signal("foot_forces", forces, tuple(f"{name}.{column}" for name in names for column in COLUMNS)),
-        Signal("friction_use", friction_use, tuple(f"{name}.friction_use" for name in names)),
+        Signal("foot_forces", forces, foot_columns(sides)),
+        Signal("friction_use", friction_use, tuple(f"{side.lower()}_foot.friction_use" for side in sides)),
     )

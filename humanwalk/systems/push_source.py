@@ -15,6 +15,8 @@ from humanwalk.systems.abstract_output import declare_abstract_output
 from humanwalk.systems.signal import Signal, xyz
 from humanwalk.walking.push import Push, PushParameters, all_pushes
 
+FORCE_COLUMNS = xyz("push.force_", "N")
+
 
 @dataclass(frozen=True)
 class Pushes:
@@ -52,7 +54,7 @@ class PushSource(LeafSystem):
         forces = Value([ExternallyAppliedSpatialForce()])
         declare_abstract_output(self, "spatial_forces", forces, self._calc_spatial_forces, needs)
         force = self.DeclareVectorOutputPort("force", 3, self._calc_force, prerequisites_of_calc=needs)
-        self.signals = (Signal("push", force, xyz("push.force_", "N")),)
+        self.signals = (Signal("push", force, FORCE_COLUMNS),)
 
     def set_pushes(self, context: Context, pushes: Sequence[Push]) -> None:
         """Replace the pushes in this system's context.
