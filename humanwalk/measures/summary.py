@@ -20,6 +20,9 @@ from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import printable
 from humanwalk.scenario import Scenario
 
+PACKAGES = ("humanwalk", "drake", "numpy")
+"""Packages whose versions a summary names."""
+
 
 class Summary(TypedDict):
     """The measures of a run, ready for JSON; keys carry their units, None is a number that the run does not have."""
@@ -120,7 +123,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "cost_of_transport": cost if physics else None,
         "wall_time_s": wall_time,
         "realtime_factor": float(time[-1]) / wall_time,
-        "versions": {name: version(name) for name in ("humanwalk", "drake", "numpy")},
+        "versions": {name: version(name) for name in PACKAGES},
         "seed": scenario.seed,
         "gait": gait_measures(signals, steady_from, directions.facing) if physics else None,
     }

@@ -10,10 +10,9 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.files import read_regular
+from humanwalk.measures.summary import PACKAGES
 from humanwalk.quantity import ParameterError, file_paths, replace_file_paths
 from humanwalk.scenario import Scenario, dump_scenario
-
-PACKAGES = ("humanwalk", "drake", "numpy")
 
 MAX_FOLLOWED_BYTES = 200_000_000
 """Largest file of a scenario that is hashed and copied into a run folder."""

@@ -15,11 +15,11 @@ from humanwalk.files import make_folder
 from humanwalk.measures.curves import CURVES
 from humanwalk.measures.human_likeness import Comparison, compare
 from humanwalk.measures.signals import UNITS
-from humanwalk.measures.summary import Summary
+from humanwalk.measures.summary import PACKAGES, Summary
 from humanwalk.measures.walk_measures import MEASURES
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.outcome import Outcome
-from humanwalk.run.provenance import PACKAGES, versions
+from humanwalk.run.provenance import versions
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario
 
