@@ -90,6 +90,8 @@ LookOption = Annotated[
     str, typer.Option(help="person, or bones: rods between the joints, their axes and the contact points.")
 ]
 
+CheckpointOption = Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")]
+
 OverwriteOption = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there already.")]
 
 

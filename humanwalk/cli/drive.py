@@ -10,6 +10,7 @@ from rich.console import Console
 
 from humanwalk.cli.walk import LOST, illustrate, run_folder, write_or_rescue
 from humanwalk.quantity import ParameterError
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 from humanwalk.run.driven import require_drivable
 from humanwalk.run.folder import RUNS, Run
 from humanwalk.run.live_view import is_lost
@@ -36,7 +37,7 @@ def drive_and_write(
     replay: bool,
     plots: bool,
     console: Console,
-    checkpoint_period: float = 60.0,
+    checkpoint_period: float = CHECKPOINT_PERIOD,
 ) -> list[Run]:
     """Drive a scenario until Ctrl-C or the loss of the page; returns the saved runs, one for each reset and the last.
 

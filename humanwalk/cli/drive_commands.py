@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from humanwalk.cli.changes import Changes, takes_changes
-from humanwalk.cli.common import SIMULATE, ScenarioArgument, app, console
+from humanwalk.cli.common import SIMULATE, CheckpointOption, ScenarioArgument, app, console
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 
 DURATION = 300.0
 """Longest driven walk unless --duration is given [s]."""
@@ -29,7 +30,7 @@ def drive(
     record: Annotated[bool, typer.Option(help="Save the walks; the page can change it.")] = True,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = False,
-    checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
+    checkpoint: CheckpointOption = CHECKPOINT_PERIOD,
 ) -> None:
     """Drive a walker in the browser, in real time: steer it, push it, pause; every walk becomes a run.
 

@@ -11,6 +11,7 @@ from humanwalk.cli.common import (
     FELL,
     INTERRUPTED,
     SIMULATE,
+    CheckpointOption,
     ScenarioArgument,
     app,
     console,
@@ -19,6 +20,7 @@ from humanwalk.cli.common import (
 )
 from humanwalk.measures import ends
 from humanwalk.quantity import ParameterError, printable
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 
 
 @app.command(
@@ -51,7 +53,7 @@ def walk(
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Watch live in the browser, in real time.")] = False,
     replay: Annotated[bool, typer.Option(help="Write replay.html.")] = True,
     plots: Annotated[bool, typer.Option(help="Write the plots.")] = True,
-    checkpoint: Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")] = 60.0,
+    checkpoint: CheckpointOption = CHECKPOINT_PERIOD,
 ) -> None:
     """Simulate a walk and write its run folder: scenario, signals, summary, replay page and plots."""
     from humanwalk.cli.walk import balanced_overrides, file_name, follow_overrides, walk_and_write

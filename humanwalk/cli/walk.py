@@ -19,6 +19,7 @@ from humanwalk.choices.style import RecordedStyle
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, numbers_of, printable
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 from humanwalk.run.folder import RUNS, Run, claimed, new_run_folder, require_room
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.outcome import Outcome
@@ -44,7 +45,7 @@ def walk_and_write(
     replay: bool,
     plots: bool,
     console: Console,
-    checkpoint_period: float = 60.0,
+    checkpoint_period: float = CHECKPOINT_PERIOD,
 ) -> Run:
     """Simulate a scenario and write its run folder.
 

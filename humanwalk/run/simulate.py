@@ -18,6 +18,7 @@ from humanwalk.diagrams.visualizer import add_visualizer
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.measures.ends import COMPLETED, FELL, INTERRUPTED, UNFINISHED
 from humanwalk.quantity import ParameterError, printable
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 from humanwalk.run.fall_picture import show_fall
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.monitor import Monitor
@@ -111,7 +112,7 @@ def simulate(
     on_progress: Callable[[float], None] | None = None,
     realtime_rate: float = 0.0,
     on_checkpoint: Callable[[Outcome], None] | None = None,
-    checkpoint_period: float = 60.0,
+    checkpoint_period: float = CHECKPOINT_PERIOD,
     on_end: Callable[[Outcome], object] | None = None,
     live: Meshcat | None = None,
 ) -> Outcome:
@@ -144,7 +145,7 @@ def simulate_prepared(
     monitor: Monitor,
     on_progress: Callable[[float], None] | None = None,
     on_checkpoint: Callable[[Outcome], None] | None = None,
-    checkpoint_period: float = 60.0,
+    checkpoint_period: float = CHECKPOINT_PERIOD,
     on_end: Callable[[Outcome], object] | None = None,
     fall_rate: float = 0.0,
 ) -> Outcome:

@@ -11,6 +11,7 @@ from pydrake.geometry import Meshcat
 from humanwalk.choices.sources import LIVE
 from humanwalk.measures.ends import COMPLETED, FELL, INTERRUPTED
 from humanwalk.measures.fall import report_fall
+from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 from humanwalk.run.driven import Driven, require_drivable
 from humanwalk.run.monitor import CHECK_PERIOD, Monitor, caught_signals
 from humanwalk.run.outcome import Outcome
@@ -59,7 +60,7 @@ def drive(
     replay: Meshcat | None = None,
     record: bool = True,
     on_checkpoint: Callable[[Outcome], None] | None = None,
-    checkpoint_period: float = 60.0,
+    checkpoint_period: float = CHECKPOINT_PERIOD,
     on_end: Callable[[Drive], object] | None = None,
 ) -> Drive:
     """Simulate a scenario at the pace of the clock, driven by the page.
