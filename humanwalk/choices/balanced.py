@@ -25,6 +25,7 @@ from humanwalk.control.gain_noise import noisy_tasks
 from humanwalk.control.whole_body_parameters import WholeBodyParameters
 from humanwalk.motion.walking_posture import height_ratio
 from humanwalk.numerics import Array
+from humanwalk.numerics.random_stream import RandomStream
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import ParameterError, choice, quantity, tag_of
 from humanwalk.systems.gait_planner import GaitPlanner
@@ -41,12 +42,6 @@ START_FLEXION = 0.12
 SETTLING = 2.0
 """Time from the end of the first change of speed to the part of the walk that is measured, for the reference body [s]
 (our choice): four steps. At 1.2 m/s the first stride of that part is 5 % faster than those three strides later."""
-
-KNOWLEDGE_ERRORS = 4
-"""Stream of the seed from which errors of the known terrain are drawn."""
-
-TASK_GAINS = 3
-"""Stream of the seed from which the noise of the tasks' gains is drawn."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +179,7 @@ class BalancedController:
             foot_forces=world.port("foot_contact", "foot_forces"),
         ).GetOutputPort("load")
         world.builder.Connect(load, world.builder.GetSubsystemByName("body_observer").GetInputPort("load"))
-        errors = np.random.default_rng((world.seed, KNOWLEDGE_ERRORS))
+        errors = RandomStream.KNOWLEDGE_ERRORS.of(world.seed)
         planner = world.add(
             "planner",
             GaitPlanner(
@@ -202,7 +197,7 @@ class BalancedController:
             command=command.GetOutputPort("command"),
             load=load,
         )
-        tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, np.random.default_rng((world.seed, TASK_GAINS)))
+        tasks = noisy_tasks(fitted.whole_body, world.start.gain_noise, RandomStream.TASK_GAINS.of(world.seed))
         posture = self._hanging_arms(world.subject)
         style = fitted.style.task(world.subject, JointMap.of(world.model))
         controller = world.add(

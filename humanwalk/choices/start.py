@@ -12,11 +12,9 @@ from humanwalk.body.joint_map import ROUNDING, JointMap, pelvis_pose
 from humanwalk.body.plant import body_plant, sole_points
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
+from humanwalk.numerics.random_stream import RandomStream
 from humanwalk.quantity import ParameterError, near_or_all, quantity, require_in_range
 from humanwalk.terrain import Terrain
-
-RATES = 1
-"""Stream of the seed from which the rates' noise is drawn, independent of that of the angles."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ def start_positions(
             f"start.joint_angles.{joints.names[i]}: {theta[i]:g} is beyond the joint's range; allowed: "
             f"{joints.lower[i]:.4g} to {joints.upper[i]:.4g} rad; the nearest allowed value is {nearest:.4g}"
         )
-    noise = np.random.default_rng(seed).standard_normal(theta.size)
+    noise = RandomStream.START_ANGLES.of(seed).standard_normal(theta.size)
     theta = np.clip(theta + start.joint_noise * noise, joints.lower, joints.upper)
 
     q = plant.GetPositions(context)
@@ -111,5 +109,5 @@ def start_velocities(subject: Subject, start: StartParameters, seed: int) -> Arr
     plant = body_plant(subject)
     joints = JointMap.of(plant)
     v = np.zeros(plant.num_velocities())
-    v[joints.v] = start.rate_noise * np.random.default_rng((seed, RATES)).standard_normal(joints.v.size)
+    v[joints.v] = start.rate_noise * RandomStream.START_RATES.of(seed).standard_normal(joints.v.size)
     return v

@@ -29,8 +29,7 @@ class World:
         subject: whose body it is.
         terrain: the ground.
         start: noise of the start and of all gains.
-        seed: of everything random; each noise is drawn from a stream of its own, (seed, stream);
-            that of the start's angles from the seed itself.
+        seed: of everything random, see `RandomStream`.
         kp, kd: gains of the actuators, in actuator order [N m/rad], [N m s/rad], shape (n,).
         step_impedance: of the actuation, in actuator order.
         sources: systems that command and push the walker.

@@ -2,7 +2,6 @@
 
 from functools import partial
 
-import numpy as np
 from pydrake.geometry import SceneGraph
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
@@ -15,6 +14,7 @@ from humanwalk.contact.ground_properties import set_ground_compliance
 from humanwalk.contact.leg_contact import add_leg_capsules, filter_leg_capsules
 from humanwalk.contact.sole_filter import filter_soles
 from humanwalk.control.gain_noise import gain_factors
+from humanwalk.numerics.random_stream import RandomStream
 from humanwalk.scenario import Scenario
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.signal import signals_of
@@ -24,9 +24,6 @@ APPROXIMATIONS = {
     "lagged": DiscreteContactApproximation.kLagged,
     "similar": DiscreteContactApproximation.kSimilar,
 }
-
-ACTUATOR_GAINS = 2
-"""Stream of the seed from which the noise of the actuators' gains is drawn."""
 
 
 def add_world(
@@ -51,7 +48,7 @@ def add_world(
     plant.set_contact_model(contact.model)
     if plant.time_step() > 0:
         plant.set_discrete_contact_approximation(APPROXIMATIONS[scenario.simulation.contact_approximation])
-    model, random = kinematics_plant(subject), np.random.default_rng((scenario.seed, ACTUATOR_GAINS))
+    model, random = kinematics_plant(subject), RandomStream.ACTUATOR_GAINS.of(scenario.seed)
     kp, kd = (
         gain * gain_factors(gain.size, start.gain_noise, random) for gain in scenario.controller.actuator_gains(subject)
     )

@@ -3,13 +3,9 @@
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from humanwalk.body.limbs import CHEST
+from humanwalk.numerics.random_stream import RandomStream
 from humanwalk.quantity import ParameterError, quantity
-
-RANDOM_PUSHES = 5
-"""Stream of the seed from which random pushes are drawn."""
 
 ROUNDING = 1e-9
 """Rounding error of simulated times [s]. It must not make a push a step longer or shorter."""
@@ -81,7 +77,7 @@ def all_pushes(parameters: PushParameters, seed: int) -> tuple[Push, ...]:
     """The given pushes, then the random ones drawn from `seed`."""
     drawn = []
     if parameters.random_interval > 0.0:
-        random = np.random.default_rng((seed, RANDOM_PUSHES))
+        random = RandomStream.PUSHES.of(seed)
         time = random.exponential(parameters.random_interval)
         while time < parameters.random_until:
             impulse, direction = random.uniform(0.0, parameters.random_impulse), random.uniform(-math.pi, math.pi)
