@@ -93,7 +93,7 @@ def make_walk(
             (leg.ankle_rotation, np.zeros_like(time)),
         ):
             data[f"{joint}.angle_rad"] = angle
-        for joint in (leg.hip_flexion, leg.knee, leg.ankle):
+        for joint in leg.sagittal:
             data[f"{joint}.velocity_rad_s"] = np.full_like(time, 1.0)
             data[f"{joint}.torque_N_m"] = 35.0 * np.sin(2 * np.pi * phase)
     phase = time / STRIDE

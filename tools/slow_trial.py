@@ -13,7 +13,7 @@ from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.subject import Subject
-from humanwalk.motion.gait_curves import normative_curves, styled_joints
+from humanwalk.motion.gait_curves import normative_curves
 
 DURATION, RATE = 8.0, 50.0
 """Length [s] and sampling rate [Hz]."""
@@ -40,7 +40,7 @@ def write(path: Path, speed: float, step: float, duration: float) -> None:
     columns = {"time": time, "pelvis_tx": speed * time, "pelvis_ty": zero + HIP_HEIGHT, "pelvis_tz": zero}
     for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
         angles = np.array([CURVES.at(side, t / (2.0 * step) + offset, speed).value for t in time])
-        columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(styled_joints(LEGS[side]))}
+        columns |= {f"{joint}.angle_rad": angles[:, i] for i, joint in enumerate(LEGS[side].sagittal)}
         columns |= {f"{joint}.angle_rad": zero for joint in LEGS[side].hip[1:]}
     header = ",".join(columns)
     np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=header, comments="")

@@ -65,6 +65,11 @@ class Leg:
         return (self.hip_flexion, self.hip_abduction, self.hip_rotation)
 
     @property
+    def sagittal(self) -> tuple[str, str, str]:
+        """The joints that move the leg forward and backward: hip, knee, ankle."""
+        return (self.hip_flexion, self.knee, self.ankle)
+
+    @property
     def ankle_joints(self) -> tuple[str, str, str]:
         """The three joints of the ankle."""
         return (self.ankle, self.ankle_inversion, self.ankle_rotation)

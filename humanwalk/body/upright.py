@@ -68,7 +68,7 @@ def knee_flexions(skeleton: Skeleton, flexion: float) -> Mapping[Side, float]:
     """
     lengths, lows, highs = [], [], []
     for leg in (LEGS[side] for side in SIDES):
-        hip, knee, ankle = (skeleton.joint(name) for name in (leg.hip_flexion, leg.knee, leg.ankle))
+        hip, knee, ankle = (skeleton.joint(name) for name in leg.sagittal)
         lengths.append(-knee.origin[2] - ankle.origin[2])
         half = [(2.0 * low, 2.0 * high) for low, high in (hip.range_rad, ankle.range_rad)]
         highs.append(min(high for _, high in (knee.range_rad, *half)))

@@ -10,7 +10,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import Dynamics
 from humanwalk.control.whole_body_parameters import TaskGains
 from humanwalk.control.whole_body_tasks import Task
-from humanwalk.motion.gait_curves import GaitCurves, styled_joints
+from humanwalk.motion.gait_curves import GaitCurves
 from humanwalk.walking.walking_reference import WalkingReference
 
 
@@ -33,7 +33,7 @@ class JointStyle:
         """
         self._curves, self._gains = curves, gains
         self._scale = np.sqrt((1.0, 1.0, ankle))
-        places = {side: [joints.names.index(name) for name in styled_joints(LEGS[side])] for side in SIDES}
+        places = {side: [joints.names.index(name) for name in LEGS[side].sagittal] for side in SIDES}
         self._q = {side: joints.q[place] for side, place in places.items()}
         self._v = {side: joints.v[place] for side, place in places.items()}
 

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import Leg
 from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, people
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -18,12 +17,7 @@ HARMONICS = 8
 J. Biomech. 7(2) 157-159)."""
 
 ANGLES = ("hip_flexion_deg", "knee_flexion_deg", "ankle_dorsiflexion_deg")
-"""Human angles of the joints of `styled_joints`."""
-
-
-def styled_joints(leg: Leg) -> tuple[str, str, str]:
-    """The sagittal joints of a leg."""
-    return (leg.hip_flexion, leg.knee, leg.ankle)
+"""Human angles of the joints of `Leg.sagittal`."""
 
 
 class PhaseMotion(NamedTuple):

@@ -11,7 +11,7 @@ from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
-from humanwalk.motion.gait_curves import GaitCurves, styled_joints
+from humanwalk.motion.gait_curves import GaitCurves
 from humanwalk.motion.recorded_motion import RecordedMotion
 from humanwalk.numerics import Array, Indices
 from humanwalk.quantity import ParameterError, printable
@@ -68,7 +68,7 @@ def recorded_gait(motion: RecordedMotion, subject: Subject, name: str) -> Record
     angles = motion.angles_at(time)
     strides, cycles, distances = [], [], []
     for side in SIDES:
-        hip, knee, _ = columns = [joints.names.index(joint) for joint in styled_joints(LEGS[side])]
+        hip, knee, _ = columns = [joints.names.index(joint) for joint in LEGS[side].sagittal]
         touchdowns = _touchdowns(_forward_reach(angles[:, hip], angles[:, knee], subject))
         if touchdowns.size < 2:
             raise ParameterError(

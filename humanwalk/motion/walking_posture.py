@@ -13,7 +13,7 @@ from humanwalk.body.plant import skeleton_plant, sole_points
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
 from humanwalk.gait.normative import SPEED_GROUPS
-from humanwalk.motion.gait_curves import normative_curves, styled_joints
+from humanwalk.motion.gait_curves import normative_curves
 
 PHASES = np.arange(0.0, 0.5, 0.025)
 """Of the right leg in half a gait cycle, after which the legs have changed places."""
@@ -43,7 +43,7 @@ def _mean_height(body: Skeleton) -> float:
     for phase in PHASES:
         for side, of_leg in zip(SIDES, (phase, phase + 0.5), strict=True):
             angles = curves.at(side, of_leg, speed).value
-            for joint, angle in zip(styled_joints(LEGS[side]), angles, strict=True):
+            for joint, angle in zip(LEGS[side].sagittal, angles, strict=True):
                 plant.GetJointByName(joint).set_angle(context, angle)
         heights.append(_height(body, plant, context))
     return float(np.mean(heights)) / straight

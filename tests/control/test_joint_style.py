@@ -10,7 +10,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.control.body_dynamics import BodyDynamics, Dynamics
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import TaskGains
-from humanwalk.motion.gait_curves import GaitCurves, styled_joints
+from humanwalk.motion.gait_curves import GaitCurves
 from humanwalk.walking.walking_reference import FootReference, FootTask, Phase, WalkingReference
 
 GAINS = TaskGains(100.0, 20.0, 4.0)
@@ -51,7 +51,7 @@ def test_each_leg_follows_its_own_phase(dynamics: BodyDynamics, style: JointStyl
         wanted = (GAINS.stiffness * cosine - GAINS.damping * rate * sine - rate**2 * cosine) * np.array((0.3, 0.2, 0.1))
         assert task.acceleration == pytest.approx(wanted, abs=1e-6)
         assert task.weight == pytest.approx(GAINS.weight)
-        places = [int(dynamics.joints.v[dynamics.joints.names.index(name)]) for name in styled_joints(LEGS[side])]  # type: ignore[index]
+        places = [int(dynamics.joints.v[dynamics.joints.names.index(name)]) for name in LEGS[side].sagittal]  # type: ignore[index]
         assert task.J @ np.arange(body.v.size) == pytest.approx(places)
 
 

@@ -43,7 +43,7 @@ def test_a_measure_that_changes_on_the_right_changes_there_only(walk: Callable[.
     leg, change, signals = LEGS["Right"], 1.2, walk()
     made = {name: signals[name].to_numpy() for name in signals.column_names}
     made["right_foot.force_z_N"] = change * made["right_foot.force_z_N"]
-    for joint in (leg.hip_flexion, leg.knee, leg.ankle):
+    for joint in leg.sagittal:
         made[f"{joint}.torque_N_m"] = change * made[f"{joint}.torque_N_m"]
         # An offset is no range.
         made[f"{joint}.angle_rad"] = 0.3 + change * made[f"{joint}.angle_rad"]

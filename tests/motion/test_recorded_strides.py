@@ -9,7 +9,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
-from humanwalk.motion.gait_curves import normative_curves, styled_joints
+from humanwalk.motion.gait_curves import normative_curves
 from humanwalk.motion.recorded_motion import RecordedMotion
 from humanwalk.motion.recorded_strides import recorded_gait
 from humanwalk.numerics import Array
@@ -28,7 +28,7 @@ def recording(duration: float = 5.0, speed: float = SPEED) -> RecordedMotion:
     angles: Array = np.zeros((time.size, len(joints.names)))
     for side, offset in zip(SIDES, (0.0, 0.5), strict=True):
         phase = (time - 0.2) / (2.0 * STEP) + offset
-        columns = [joints.names.index(name) for name in styled_joints(LEGS[side])]
+        columns = [joints.names.index(name) for name in LEGS[side].sagittal]
         angles[:, columns] = [CURVES.at(side, value, SPEED).value for value in phase]
     path = np.column_stack((speed * time, 0.0 * time, 0.0 * time + 0.93))
     return RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0)
