@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from humanwalk.body import SIDES
 from humanwalk.measures.events import CONTACT_ON_N, stretches
+from humanwalk.measures.orientation import pelvis_rotation
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
@@ -216,8 +217,8 @@ def _standing(phase: Array) -> Mask:
 
 def _heading(signals: pa.Table, row: int) -> float:
     """Angle about z of the pelvis' x axis in W [rad]."""
-    w, x, y, z = (float(signals[f"pelvis.quaternion_{axis}"][row].as_py()) for axis in "wxyz")
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    ahead = pelvis_rotation(signals.slice(row, 1)).apply((1.0, 0.0, 0.0))[0]
+    return math.atan2(ahead[1], ahead[0])
 
 
 def _side(toward: Array, heading: float) -> str:
