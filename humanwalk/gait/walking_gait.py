@@ -142,37 +142,36 @@ class WalkingGait:
     def _foot(self, side: Side, pelvis: PelvisTarget) -> FootTarget:
         d = pelvis.distance
         phase = self._phase(side, d)
+        # Slopes are derivatives by d / length.
         if side == self.first_swing and d < self.start_distance:
-            tau = d / self.start_distance
-            (x, height), slopes = self._start.position(tau), self._start.derivative(tau)
-            x_slope, height_slope = (slope / self.start_distance for slope in slopes)
-            hump, hump_slope = swing_hump(tau)
-            pitch = self.parameters.toe_drop * hump
-            pitch_slope = self.parameters.toe_drop * hump_slope / self.start_distance
-            step, progress, progress_slope = (0, 1), tau, 1.0 / self.start_distance
+            length = self.start_distance
+            progress, progress_slope = d / length, 1.0
+            (x, height), slopes = self._start.position(progress), self._start.derivative(progress)
+            pitch, pitch_slope = (self.parameters.toe_drop * hump for hump in swing_hump(progress))
+            step = (0, 1)
         else:
+            length = self.parameters.walked_stride
+            progress, progress_slope = self._cycle.progress(phase)
             (x, height), slopes = self._cycle.position(phase), self._cycle.derivative(phase)
-            x_slope, height_slope = (slope / self.parameters.walked_stride for slope in slopes)
             pitch, pitch_slope = self._cycle.pitch(phase)
-            pitch_slope /= self.parameters.walked_stride
             last = self._last_foothold(side, d)
             step = (max(last, 0), last + 2)
-            progress, progress_slope = self._cycle.progress(phase)
-            progress_slope /= self.parameters.walked_stride
-        height_rate = height_slope * pelvis.speed
+        x_rate, height_rate, pitch_rate, progress_rate = (
+            slope / length * pelvis.speed for slope in (*slopes, pitch_slope, progress_slope)
+        )
         z = height - self.parameters.offset + pelvis.drop
         return FootTarget(
             position=(x - 0.5 * self.parameters.step_length, self._y(side), z),
-            velocity=(x_slope * pelvis.speed, 0.0, height_rate + pelvis.drop_rate),
+            velocity=(x_rate, 0.0, height_rate + pelvis.drop_rate),
             height=height,
             height_rate=height_rate,
             pitch=pitch,
-            pitch_rate=pitch_slope * pelvis.speed,
+            pitch_rate=pitch_rate,
             phase=phase,
             in_stance=self._in_stance(side, d),
             step=step,
             progress=progress,
-            progress_rate=progress_slope * pelvis.speed,
+            progress_rate=progress_rate,
         )
 
     def _in_stance(self, side: Side, d: float) -> bool:
