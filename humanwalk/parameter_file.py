@@ -113,22 +113,20 @@ def plain(parameters: Any) -> dict[str, Any]:
 def plain_value(value: Any) -> Any:
     """A value of parameters as YAML has it: mappings, lists and scalars, every field written out."""
     if dataclasses.is_dataclass(value):
-        entries: dict[str, Any] = {}
-        for field in dataclasses.fields(value):
-            entry = getattr(value, field.name)
-            if "choices" in field.metadata:
-                entries[field.name] = _tagged(field.metadata["choices"], entry)
-            elif "choices_by_name" in field.metadata:
-                choices = field.metadata["choices_by_name"]
-                entries[field.name] = {name: _tagged(choices, chosen) for name, chosen in entry.items()}
-            elif "choice_list" in field.metadata:
-                entries[field.name] = [_tagged(field.metadata["choice_list"], chosen) for chosen in entry]
-            else:
-                entries[field.name] = plain_value(entry)
-        return entries
+        return {field.name: _plain_field(field, getattr(value, field.name)) for field in dataclasses.fields(value)}
     if isinstance(value, Mapping):
         return {key: plain_value(entry) for key, entry in value.items()}
     return [plain_value(entry) for entry in value] if isinstance(value, tuple | list) else value
+
+
+def _plain_field(field: dataclasses.Field[Any], value: Any) -> Any:
+    if "choices" in field.metadata:
+        return _tagged(field.metadata["choices"], value)
+    if "choices_by_name" in field.metadata:
+        return {name: _tagged(field.metadata["choices_by_name"], chosen) for name, chosen in value.items()}
+    if "choice_list" in field.metadata:
+        return [_tagged(field.metadata["choice_list"], chosen) for chosen in value]
+    return plain_value(value)
 
 
 def _tagged(choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
@@ -216,29 +214,28 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, defaul
             raise ParameterError(
                 f"{place / name}: no such field; allowed: {', '.join(fields)}{_hint(name, fields, place)}"
             )
-        metadata = fields[key].metadata
-        if "choices" in metadata:
-            arguments[key] = _build_choice(metadata["choices"], entry, place / name)
-        elif "choices_by_name" in metadata:
-            entries = _build(Mapping[str, Any], entry, place / name)
-            arguments[key] = {
-                which: _build_choice(metadata["choices_by_name"], value, place / name / which)
-                for which, value in entries.items()
-            }
-        elif "choice_list" in metadata:
-            arguments[key] = tuple(
-                _build_choice(metadata["choice_list"], item, at)
-                for item, at in _entries(entry, place / name, ", ".join(metadata["choice_list"]))
-            )
-        elif "unit" in metadata:
-            arguments[key] = _build_scalar(hints[key], entry, place / name, f"allowed: {range_text(**metadata)}; ")
-        else:
-            group = fields[key].default if default is None else getattr(default, key)
-            arguments[key] = _build(hints[key], entry, place / name, group)
+        before = fields[key].default if default is None else getattr(default, key)
+        arguments[key] = _build_field(fields[key], hints[key], entry, place / name, before)
     try:
         return make(**arguments)
     except ParameterError as error:
         raise ParameterError(f"{place / str(error)}") from None
+
+
+def _build_field(field: dataclasses.Field[Any], kind: Any, value: Any, place: _Place, default: Any) -> Any:
+    """The value of a field of the annotated type `kind`; see `_build` for `default`."""
+    metadata = field.metadata
+    if "choices" in metadata:
+        return _build_choice(metadata["choices"], value, place)
+    if "choices_by_name" in metadata:
+        named, choices = _build(Mapping[str, Any], value, place), metadata["choices_by_name"]
+        return {name: _build_choice(choices, entry, place / name) for name, entry in named.items()}
+    if "choice_list" in metadata:
+        choices = metadata["choice_list"]
+        return tuple(_build_choice(choices, entry, at) for entry, at in _entries(value, place, ", ".join(choices)))
+    if "unit" in metadata:
+        return _build_scalar(kind, value, place, f"allowed: {range_text(**metadata)}; ")
+    return _build(kind, value, place, default)
 
 
 def _build_choice(choices: Mapping[str, type[Any]], value: Any, place: _Place) -> Any:
