@@ -177,22 +177,23 @@ def clearance(
     below = np.where(np.abs(TIMES - 0.5) <= 0.5 - SHORTEST_PART, np.maximum(-swing.lowest, 0.0), 0.0)
     if above.max() <= law.tolerance and not below.any():
         return Clearance().raised(ground.unseen)
+    rise = goal.ground - start.ground
     near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
+    leaving, landing = share <= near, share >= 1.0 - near
     # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
-    least = law.margin + near * abs(goal.ground - start.ground)
+    least = law.margin + near * abs(rise)
     depart, arrive = 0.0, 1.0
-    if above[share <= near].max() > least:
-        depart, above[share <= near] = law.rising, above[share <= near].max()
-    if above[share >= 1.0 - near].max() > least:
-        arrive = 1.0 - law.sinking_part(goal.ground - start.ground)
-        above[share >= 1.0 - near] = above[share >= 1.0 - near].max()
+    if above[leaving].max() > least:
+        depart, above[leaving] = law.rising, above[leaving].max()
+    if above[landing].max() > least:
+        arrive, above[landing] = 1.0 - law.sinking_part(rise), above[landing].max()
     # What is needed at times of the swing; before the foot departs, and after it has arrived, it rises and sinks.
     moved = swing.way(np.clip((TIMES - depart) / (arrive - depart), 0.0, 1.0))
     if swing.now is not None:
         progress, ankle = swing.now
         moved = _delayed(moved, progress, _share_of_way(ankle, start.position, goal.position), arrive)
     # The ground of an ordinary swing rises with the progress, not with the way.
-    ahead = (swing.way(TIMES) - moved) * (goal.ground - start.ground)
+    ahead = (swing.way(TIMES) - moved) * rise
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
     stands_out = np.interp(moved, share, above)
     needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - swing.lowest, 0.0), below)
