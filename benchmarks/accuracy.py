@@ -113,8 +113,9 @@ def motion(variant: Variant, duration: float) -> Motion:
     """Simulate without recording and keep force, angles and center of mass of every step that is taken."""
     scenario = load_scenario(variant.scenario, variant.overrides)
     prepared = prepare(scenario, record=False)
-    walker, joints = prepared.walker, JointMap.of(prepared.plant)
-    monitor = Monitor(prepared.plant, scenario.terrain)
+    walker, plant = prepared.walker, prepared.plant
+    assert plant is not None
+    joints, monitor = JointMap.of(plant), Monitor(plant, scenario.terrain)
     ports = [walker.GetOutputPort(name) for name in ("foot_forces", "state", "com")]
     kept: list[tuple[float, Array, Array, Array]] = []
 
@@ -129,7 +130,7 @@ def motion(variant: Variant, duration: float) -> Motion:
     prepared.simulator.AdvanceTo(duration)
     time, force, angle, com = (np.array(column) for column in zip(*kept, strict=True))
     # Of a discrete plant the force seen at an instant is that of the step that ends there.
-    held = force[1:] if prepared.plant.time_step() > 0 else 0.5 * (force[1:] + force[:-1])
+    held = force[1:] if plant.time_step() > 0 else 0.5 * (force[1:] + force[:-1])
     impulse = np.vstack((np.zeros(6), np.cumsum(held * np.diff(time)[:, None], axis=0)))
 
     def at(instants: Array, values: Array) -> Array:

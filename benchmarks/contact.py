@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -28,9 +29,11 @@ from humanwalk.diagrams.walker import make_diagram
 from humanwalk.measures.ends import COMPLETED
 from humanwalk.measures.events import CONTACT_ON_N, events_of
 from humanwalk.measures.signals import TIME, matrix
+from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import Scenario, load_scenario
+from humanwalk.sides import Side
 from humanwalk.systems import asperity_contact
 from humanwalk.systems.signal import state_columns
 from humanwalk.view.plots.drawing import curve, label, legend, level, new_figure, save
@@ -76,9 +79,8 @@ def evaluation() -> dict[str, Any]:
             steps.append((super().__call__, copy.deepcopy(inputs)))
             return super().__call__(*inputs)
 
-    asperity_contact.ContactStep = Recorded  # type: ignore[misc]
-    walker = make_diagram(load_scenario("thesis", {"contact": "asperity"} | STEP))
-    asperity_contact.ContactStep = ContactStep  # type: ignore[misc]
+    with patch.object(asperity_contact, "ContactStep", Recorded):
+        walker = make_diagram(load_scenario("thesis", {"contact": "asperity"} | STEP))
     simulator = Simulator(walker)
     contact = walker.GetSubsystemByName("foot_contact")
     of_contact = contact.GetMyContextFromRoot(simulator.get_context())
@@ -135,12 +137,12 @@ def signals_of(walk: str, model: str, fresh: bool) -> tuple[Scenario, Any, dict[
     return scenario, pq.read_table(folder / "signals.parquet"), json.loads((folder / "how.json").read_text())
 
 
-def sole_motion(scenario: Scenario, signals: Any) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def sole_motion(scenario: Scenario, signals: Any) -> dict[Side, tuple[Array, Array]]:
     """Of each foot, whatever the model: depth of its deepest point [m], mean speed of those below ground [m/s]."""
     plant = kinematics_plant(scenario.subject)
     context, world = plant.CreateDefaultContext(), plant.world_frame()
     states = matrix(signals, state_columns(JointMap.of(plant)))
-    motion = {}
+    motion: dict[Side, tuple[Array, Array]] = {}
     for side in SIDES:
         patches = [(plant.GetBodyByName(p.body), p.p_BoQ_B.T) for p in sole_patches(scenario.subject.skeleton, side)]
         deepest, speed = np.zeros(len(states)), np.zeros(len(states))
@@ -165,8 +167,12 @@ def measure(scenario: Scenario, signals: Any, how: dict[str, Any], motion: Any) 
     time_s = signals[TIME].to_numpy()
     steady = time_s >= scenario.controller.steady_from(scenario.subject)
     weight = scenario.subject.mass * GRAVITY
-    column = lambda name: signals[name].to_numpy()[steady]  # noqa: E731
-    vertical = sum(column(f"{side.lower()}_foot.force_z_N") for side in SIDES)
+
+    def column(name: str) -> Array:
+        values: Array = signals[name].to_numpy()[steady]
+        return values
+
+    vertical = np.sum([column(f"{side.lower()}_foot.force_z_N") for side in SIDES], axis=0)
     support = column("support.force_z_N") if "support.force_z_N" in signals.column_names else np.zeros(steady.sum())
     down = {side: events_of(signals, side).contact[steady] for side in SIDES}
     slips = {side: motion[side][1][steady] * down[side] for side in SIDES}

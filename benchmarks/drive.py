@@ -48,10 +48,12 @@ def real_time(duration: float, external: bool) -> None:
         arguments = ["drive", "walk", "-o", str(folder), "--no-replay", *browser]
         process = subprocess.Popen([sys.executable, "-c", DRIVE, *arguments], stderr=subprocess.PIPE, text=True)
         stack.callback(process.kill)
-        url = re.search(r"http://127.0.0.1:\d+/", process.stderr.readline())[0]
-        size = (64, 48) if external else (640, 360)
-        tab = chromium.new_page(viewport=dict(zip(("width", "height"), size, strict=True)))
-        tab.goto(url)
+        assert process.stderr
+        url = re.search(r"http://127.0.0.1:\d+/", process.stderr.readline())
+        assert url
+        width, height = (64, 48) if external else (640, 360)
+        tab = chromium.new_page(viewport={"width": width, "height": height})
+        tab.goto(url[0])
 
         def simulated() -> float:
             starting = tab.locator("#state").inner_text() in ("", START["state"])

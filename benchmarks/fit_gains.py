@@ -159,7 +159,7 @@ def walk(scenario: Scenario, case: Row) -> Walked | None:
     steady = Walk.of(outcome.signals, scenario)
     bands = {curve: CURVES[curve].people(steady.pace.group, steady.pace.leg) for curve in SCORED}
     means = {curve: steady.strides(curve).mean(axis=0) for curve in SCORED}
-    return row | case, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
+    return {**row, **case}, {curve: (means[curve] - bands[curve].mean) / bands[curve].sd for curve in SCORED}
 
 
 def share_within(curve: Array) -> float:
@@ -231,7 +231,8 @@ class Fit:
         jobs = [self._submit(change, point) for change in steps for point in points]
         with counted_progress("walks", estimate_period=600.0) as progress:
             found = list(progress.track((job.result() for job in jobs), total=len(jobs), description=STUDY))
-        return [None if None in walks else list(walks) for walks in batched(found, len(points))]
+        every = [[each for each in walks if each is not None] for walks in batched(found, len(points))]
+        return [walks if len(walks) == len(points) else None for walks in every]
 
     def signs(self, point: Array) -> Array:
         """Directions in which a step of each gain stays within its range."""

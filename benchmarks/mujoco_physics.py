@@ -24,13 +24,14 @@ from humanwalk.bench.bare_plant import BarePlant, record_plant
 from humanwalk.bench.cost import Cost, cost_of, in_turns
 from humanwalk.bench.result import machine
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.mjcf import GRAVITY, to_mjcf
+from humanwalk.body.mjcf import to_mjcf
 from humanwalk.body.plant import kinematics_plant
+from humanwalk.choices import ThesisController
 from humanwalk.control.balance_support import support_wrench
 from humanwalk.diagrams.world import add_world
 from humanwalk.exchange.mujoco_map import MujocoMap
 from humanwalk.files import write_text
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import GRAVITY, ParameterError
 from humanwalk.run.simulate import prepare
 from humanwalk.scenario import Scenario, load_scenario
 
@@ -69,7 +70,8 @@ class MujocoWalk:
     """MuJoCo's body after the targets of a walk."""
 
     def __init__(self, scenario: Scenario, walk: Walk) -> None:
-        self.scenario, self.walk = scenario, walk
+        assert isinstance(scenario.controller, ThesisController)
+        self.support, self.walk = scenario.controller.balance.support, walk
         self.joints = JointMap.of(kinematics_plant(scenario.subject))
         self.model = mujoco.MjModel.from_xml_string(to_mjcf(scenario.subject.skeleton))
         self.model.opt.timestep = scenario.simulation.time_step
@@ -103,7 +105,7 @@ class MujocoWalk:
         # Motors are in the skeleton's order of joints, which is the actuators'.
         self.data.ctrl[:] = self.kp * (desired[:n] - self.joints.positions(q)) + self.kd * desired[n:]
         T = self.map.velocity_matrix(q)[:6, :6]
-        wrench = support_wrench(q[:7], T @ qvel[:6], self.walk.pelvis[self.step], self.scenario.balance.support)
+        wrench = support_wrench(q[:7], T @ qvel[:6], self.walk.pelvis[self.step], self.support)
         self.data.qfrc_applied[:6] = T.T @ wrench
         self.support_force[self.step] = wrench[3:]
         self.angle[self.step] = self.joints.positions(q)

@@ -9,6 +9,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -185,13 +186,18 @@ PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
 }
 
 
+def _between_marks(content: str, marks: re.Match[str]) -> str:
+    return marks[1] + content + marks[2]
+
+
 def filled(page: Path) -> str:
     """The page with the tables of the results."""
     text = page.read_text(encoding="utf-8")
     for section in PAGES[page]:
         marks = re.compile(rf"(<!-- {section.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
         content = f"\n{section()}\n\n"
-        text, found = marks.subn(lambda match, content=content: match[1] + content + match[2], text)
+        # A function, because the content has backslashes.
+        text, found = marks.subn(partial(_between_marks, content), text)
         if found != 1:
             raise ValueError(f"{page}: needs one mark <!-- {section.__name__} -->, has {found}")
     return text

@@ -62,7 +62,9 @@ def with_piqp(tolerance: float) -> Solve:
         solver.settings.eps_abs = solver.settings.eps_rel = tolerance
         column_major = np.asfortranarray
         solver.setup(column_major(H), g, column_major(A), b, column_major(C), lower, upper, x_lower, x_upper)
-        return solver.result.x if solver.solve() == piqp.PIQP_SOLVED else None
+        is_solved = solver.solve() == piqp.PIQP_SOLVED
+        found: Array = solver.result.x
+        return found if is_solved else None
 
     return solve
 
@@ -84,7 +86,8 @@ def with_proxqp(tolerance: float, warm: bool) -> Solve:
             solver.update(*matrices, update_preconditioner=True)
         solver.solve()
         if solver.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED:
-            return solver.results.x.copy()
+            found: Array = solver.results.x.copy()
+            return found
         del solvers[size]
         return None
 

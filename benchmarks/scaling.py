@@ -14,6 +14,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -70,7 +71,7 @@ def record_MB_per_minute(scenario: str) -> float:
     recorder = TimedWalk(loaded).prepared.recorder
     assert recorder is not None
     # Times are kept, too.
-    numbers = 1 + sum(recorder.ports.values())
+    numbers = 1 + len(recorder.columns)
     return 8e-6 * numbers * 60.0 / loaded.recording.signal_period
 
 
@@ -131,20 +132,31 @@ def with_workers(counts: tuple[int, ...] = (1, 2, 4), duration: float = 3.0, rep
     for _ in range(repeats):
         for count in counts:
             command = [sys.executable, "-c", _WORKER, repr(duration)]
-            pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-            workers = [subprocess.Popen(command, env=os.environ | ONE_THREAD, **pipes) for _ in range(count)]
-            for worker in workers:
-                worker.stdout.readline()
-            began = time.perf_counter()
-            for worker in workers:
-                worker.stdin.write("\n")
-                worker.stdin.flush()
-            if any([worker.wait() for worker in workers]):
-                raise RuntimeError("a worker failed")
-            found[count].append(count * duration / (time.perf_counter() - began))
-            for worker in workers:
-                worker.stdin.close()
-                worker.stdout.close()
+            with ExitStack() as stack:
+                workers = [
+                    stack.enter_context(
+                        subprocess.Popen(
+                            command,
+                            env=os.environ | ONE_THREAD,
+                            stdin=subprocess.PIPE,
+                            stdout=subprocess.PIPE,
+                            text=True,
+                        )
+                    )
+                    for _ in range(count)
+                ]
+                pipes = [(worker.stdin, worker.stdout) for worker in workers]
+                for _, answer in pipes:
+                    assert answer
+                    answer.readline()
+                began = time.perf_counter()
+                for start, _ in pipes:
+                    assert start
+                    start.write("\n")
+                    start.flush()
+                if any([worker.wait() for worker in workers]):
+                    raise RuntimeError("a worker failed")
+                found[count].append(count * duration / (time.perf_counter() - began))
     medians = {count: float(np.median(rates)) for count, rates in found.items()}
     return [
         {"workers": n, "simulated_s_per_s": rate, "ratio": rate / medians[counts[0]]} for n, rate in medians.items()

@@ -110,7 +110,7 @@ def kill_command(folder: Path, draw: random.Random) -> None:
 
 
 @contextmanager
-def cluster(place: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+def cluster(place: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """Address and process of a scheduler with two workers, as a user starts them."""
     file = place / "scheduler.json"
     file.unlink(missing_ok=True)

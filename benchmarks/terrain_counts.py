@@ -51,7 +51,8 @@ def _lines(name: str) -> Iterator[list[str]]:
     for label in dict.fromkeys(map(ground, rows)):
         walks = [row for row in rows if ground(row) == label]
         scenarios = [study.scenario_at({column: row[column] for column in study.columns}) for row in walks]
-        speeds = [point.forward for scenario in scenarios for point in scenario.controller.command.points]
+        commands = [scenario.controller.command for scenario in scenarios]
+        speeds = [point.forward for command in commands if command for point in command.points]
         duration = max(scenario.duration for scenario in scenarios)
         walked = [row["mean_speed_m_s"] for row in walks if row["survived"] and len(set(speeds)) == 1]
         yield [

@@ -43,7 +43,8 @@ class Worker:
 
     def __init__(self, which: str, scenario: str, turns: int, skip: float) -> None:
         tree, *overrides = which.split(",")
-        self.name, self.costs = which, []
+        self.name = which
+        self.costs: list[float] = []
         path = Path(tree).resolve()
         if not (path / "humanwalk").is_dir():
             sys.exit(f"{tree}: is no checkout; allowed: folders that hold the package humanwalk")
@@ -51,17 +52,20 @@ class Worker:
         pipe = subprocess.PIPE
         environment = os.environ | ONE_THREAD | {"PYTHONPATH": str(path)}
         self.process = subprocess.Popen(command, cwd=path, env=environment, stdin=pipe, stdout=pipe, text=True)
+        assert self.process.stdin
+        assert self.process.stdout
+        self.input, self.output = self.process.stdin, self.process.stdout
         self.read()
 
     def read(self) -> float:
-        line = self.process.stdout.readline()
+        line = self.output.readline()
         if not line:
             sys.exit(f"{self.name}: ended before its turn, exit code {self.process.wait()}")
         return float(line)
 
     def turn(self) -> None:
-        self.process.stdin.write("\n")
-        self.process.stdin.flush()
+        self.input.write("\n")
+        self.input.flush()
         self.costs.append(self.read())
 
 
