@@ -70,14 +70,14 @@ def with_piqp(tolerance: float) -> Solve:
 
 
 def with_proxqp(tolerance: float, warm: bool) -> Solve:
-    solvers: dict[int, Any] = {}
+    solvers: dict[tuple[int, ...], Any] = {}
 
     def solve(program: QuadraticProgram) -> Array | None:
         matrices = parts(program)
-        size = len(matrices[0])
+        size = len(matrices[0]), len(matrices[3]), len(matrices[5])
         solver = solvers.get(size) if warm else None
         if solver is None:
-            solver = solvers[size] = proxqp.dense.QP(size, len(matrices[3]), len(matrices[5]), True)
+            solver = solvers[size] = proxqp.dense.QP(*size, True)
             solver.settings.eps_abs = tolerance
             solver.settings.max_iter = 200
             solver.init(*matrices)

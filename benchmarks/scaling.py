@@ -32,6 +32,7 @@ from humanwalk.body import contact_spheres, sdf
 from humanwalk.body.contact import ContactSphere
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
+from humanwalk.diagrams import world
 from humanwalk.files import write_text
 from humanwalk.measures.ends import COMPLETED
 from humanwalk.scenario import load_scenario
@@ -79,7 +80,7 @@ def with_contact_points(across: tuple[int, ...] = (2, 4, 8, 16)) -> list[dict[st
     """The thesis' walk with more spheres under each part of a sole, side by side, of the same stiffness together."""
     walks = {}
     for n in across:
-        with patch("humanwalk.choices.world.add_human", lambda plant, subject, n=n: add_human(plant, subject, n)):
+        with patch.object(world, "add_human", lambda plant, subject, n=n: add_human(plant, subject, n)):
             walks[6 * n] = TimedWalk(load_scenario("thesis", {"duration": "2"}), record=False)
     costs = in_turns({str(points): walk.advance for points, walk in walks.items()}, 2.0)
     first = np.array([cost.cpu for cost in costs[str(6 * across[0])]])
