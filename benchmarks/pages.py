@@ -9,7 +9,6 @@ import json
 import re
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -186,18 +185,13 @@ PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
 }
 
 
-def _between_marks(content: str, marks: re.Match[str]) -> str:
-    return marks[1] + content + marks[2]
-
-
 def filled(page: Path) -> str:
     """The page with the tables of the results."""
     text = page.read_text(encoding="utf-8")
     for section in PAGES[page]:
         marks = re.compile(rf"(<!-- {section.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
-        content = f"\n{section()}\n\n"
-        # A function, because the content has backslashes.
-        text, found = marks.subn(partial(_between_marks, content), text)
+        content = f"\n{section()}\n\n".replace("\\", r"\\")
+        text, found = marks.subn(rf"\g<1>{content}\g<2>", text)
         if found != 1:
             raise ValueError(f"{page}: needs one mark <!-- {section.__name__} -->, has {found}")
     return text

@@ -16,6 +16,7 @@ import sys
 import time
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -129,23 +130,13 @@ walk.advance(float(sys.argv[1]))
 
 def with_workers(counts: tuple[int, ...] = (1, 2, 4), duration: float = 3.0, repeats: int = 3) -> list[dict[str, Any]]:
     """Simulated seconds of the thesis' walk per second on the clock of several processes at once; medians."""
+    command, pipe = [sys.executable, "-c", _WORKER, repr(duration)], subprocess.PIPE
+    start_worker = partial(subprocess.Popen, command, env=os.environ | ONE_THREAD, stdin=pipe, stdout=pipe, text=True)
     found: dict[int, list[float]] = {count: [] for count in counts}
     for _ in range(repeats):
         for count in counts:
-            command = [sys.executable, "-c", _WORKER, repr(duration)]
             with ExitStack() as stack:
-                workers = [
-                    stack.enter_context(
-                        subprocess.Popen(
-                            command,
-                            env=os.environ | ONE_THREAD,
-                            stdin=subprocess.PIPE,
-                            stdout=subprocess.PIPE,
-                            text=True,
-                        )
-                    )
-                    for _ in range(count)
-                ]
+                workers = [stack.enter_context(start_worker()) for _ in range(count)]
                 pipes = [(worker.stdin, worker.stdout) for worker in workers]
                 for _, answer in pipes:
                     assert answer

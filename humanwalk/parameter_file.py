@@ -214,8 +214,8 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, defaul
             raise ParameterError(
                 f"{place / name}: no such field; allowed: {', '.join(fields)}{_hint(name, fields, place)}"
             )
-        before = fields[key].default if default is None else getattr(default, key)
-        arguments[key] = _build_field(fields[key], hints[key], entry, place / name, before)
+        inherited = fields[key].default if default is None else getattr(default, key)
+        arguments[key] = _build_field(fields[key], hints[key], entry, place / name, inherited)
     try:
         return make(**arguments)
     except ParameterError as error:

@@ -83,8 +83,9 @@ def _group_in(
 
 def _default_list(field: dataclasses.Field[Any] | None) -> list[Any]:
     """The entries that a list has where a file does not name it."""
-    default = dataclasses.MISSING if field is None else field.default
-    entries = [] if default is dataclasses.MISSING else plain_value(default)
+    if field is None or field.default is dataclasses.MISSING:
+        return []
+    entries = plain_value(field.default)
     return entries if isinstance(entries, list) else []
 
 

@@ -61,7 +61,7 @@ def drive_and_write(
     for line in loaded.warnings:
         console.print(f"warning: {line}", soft_wrap=True)
     first = output.absolute() if output else RUNS / NAME
-    # Refused before there is a page; each walk makes its folder anew.
+    # An unusable folder is refused before the page opens. Every walk claims its own folder.
     with run_folder(output, first, loaded):
         pass
     page = DrivePage(make_meshcat(live=True))

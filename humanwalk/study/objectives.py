@@ -78,7 +78,7 @@ class Bound(Measured):
     def __post_init__(self) -> None:
         """Raise ParameterError without a limit, and unless low <= high."""
         if self.low <= -NO_LIMIT and self.high >= NO_LIMIT:
-            raise ParameterError("low: no limit, and high has none; allowed: low, high or both; write one of them")
+            raise ParameterError("low: no limit, and no high; allowed: low, high or both; write one of them")
         if self.low > self.high:
             raise ParameterError(f"low: {self.low:g} is above high; allowed: up to {self.high:g}; swap them")
 

@@ -125,15 +125,15 @@ class Results:
         for column in columns:
             if name in (column, _without_units(column)):
                 return column
-        refusal = f"--measure {printable(name)}: no such measure"
-        allowed = "allowed: measured numbers in table.csv"
+        wanted, allowed = f"--measure {printable(name)}", "allowed: measured numbers in table.csv"
         if name in self.table.column_names:
             raise ParameterError(
-                f"{refusal}, for it is no measured number; {allowed}, like {', '.join(USUAL_MEASURES)}"
+                f"{wanted}: no such measure, the column has no measured numbers; {allowed}, like "
+                f"{', '.join(USUAL_MEASURES)}"
             )
         near = [column for column in columns if name in column] or difflib.get_close_matches(name, columns, cutoff=0.4)
         hint = f"; near: {', '.join(near[:3])}" if near else ""
-        raise ParameterError(f"{refusal}; {allowed}{hint}")
+        raise ParameterError(f"{wanted}: no such measure; {allowed}{hint}")
 
     def varies(self, name: str) -> bool:
         """Whether a measure differs between rows by more than rounding."""

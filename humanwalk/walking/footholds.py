@@ -212,9 +212,9 @@ def nearest_foothold(
         return distance - bonus + search.height_weight * abs(foothold.ground - level)
 
     here = Foothold.on(ground, desired)
-    may_land_here = current is None or is_current(here.face)
+    is_face_allowed = current is None or is_current(here.face)
     has_room = places_on(here.face, desired, yaw, sole, search) == [desired]
-    if may_land_here and has_room and is_reachable(desired, here.ground):
+    if is_face_allowed and has_room and is_reachable(desired, here.ground):
         return here
     faces = ground.faces_near(np.array((expected.real, expected.imag)), search.distance)
     found = (on_face(face) for face in faces if is_current(face) or not is_final)

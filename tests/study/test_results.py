@@ -72,7 +72,8 @@ def test_an_unknown_measure_is_refused_in_one_line(results: Results) -> None:
 @pytest.mark.parametrize("name", ["end", "host", "row", SPEED])
 def test_a_column_that_is_no_measure_is_refused_with_some_that_are(results: Results, name: str) -> None:
     refusal = (
-        rf"^--measure {name}: .* it is no measured number; allowed: measured numbers in table.csv, like mean_speed"
+        rf"^--measure {name}: .* the column has no measured numbers; allowed: measured numbers in table.csv, like "
+        "mean_speed"
     )
     with pytest.raises(ParameterError, match=refusal):
         results.measures([name])

@@ -96,10 +96,10 @@ def test_shipped_tunings_are_valid_and_survive_writing(name: str, tmp_path: Path
         ({"bounds": "{survived: {low: 1.0, high: 0.5}}"}, "bounds.survived.low: 1 is above high; allowed: up to 0.5"),
         (
             {"bounds": "{survived: {}}"},
-            "bounds.survived.low: no limit, and high has none; allowed: low, high or both; write one",
+            "bounds.survived.low: no limit, and no high; allowed: low, high or both; write one",
         ),
-        ({"bounds": "{survived: {low: -1.0e+9, penalty: 2.0}}"}, "bounds.survived.low: no limit, and high has none"),
-        ({"bounds": "{survived: {low: -.inf, high: .inf}}"}, "bounds.survived.low: no limit, and high has none"),
+        ({"bounds": "{survived: {low: -1.0e+9, penalty: 2.0}}"}, "bounds.survived.low: no limit, and no high"),
+        ({"bounds": "{survived: {low: -.inf, high: .inf}}"}, "bounds.survived.low: no limit, and no high"),
         ({"runs": "{scenario: walk, keep: runs}", "objectives": "{survived: {}}"}, "runs.keep: .*; allowed: summary"),
         (
             {

@@ -58,4 +58,4 @@ def test_the_port_outlives_the_variable_of_its_system_in_a_diagram() -> None:
 def test_the_port_does_not_keep_its_system() -> None:
     reference = weakref.ref(Doubled())
     gc.collect()
-    assert reference() is None, "the port keeps the system alive"
+    assert reference() is None, "the port holds a strong reference to its system"
