@@ -50,7 +50,7 @@ class NormativeStyle:
     ankle: float = quantity(0.01, "", 0.0, 10.0)
     """Weight of the ankles relative to hips and knees. The angle of a loaded ankle follows from the knee and from the
     rockers of the foot; a greater weight moves the center of pressure and costs moments (docs/likeness_trials.md,
-    "A style that leaves the ankle to the foot")."""
+    "Should the style follow the ankle?")."""
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
         curves = normative_curves(subject.skeleton.hip_height, PELVIC_TILT)

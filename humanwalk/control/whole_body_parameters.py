@@ -60,8 +60,8 @@ class ForcePivot:
 class BallTwist:
     """Largest moment about the vertical of a foot whose heel is up, per vertical force.
 
-    With more than the ball of the foot carries the foot twists on it (docs/likeness_trials.md, "Twist on the ball").
-    When the body has to be caught, the moment matters more than the twist.
+    With more than the ball of the foot carries the foot twists on it. When the body has to be caught, the moment
+    matters more than the twist (docs/likeness_trials.md, "Does a limit of the twist on the ball help?").
     """
 
     arm: float = quantity(0.008, "m", 0.001, 0.1)
@@ -136,7 +136,7 @@ class WholeBodyParameters:
 
     spine: TaskGains = critical(100.0, 0.6)
     """Posture of the spine. With a smaller weight the trunk sways on the pelvis, and the moments of the hips vary more
-    (docs/likeness_trials.md, "What a firm spine does")."""
+    (docs/likeness_trials.md, "Does a firm spine help?")."""
 
     feet: TaskGains = critical(400.0, 30.0)
     """Posture of ankle rotation, midfoot and toes."""
@@ -172,7 +172,7 @@ class WholeBodyParameters:
     torque_unit: float = quantity(3.6, "N m", 0.1, 1e6)
     """Torque of a joint of the legs that costs as much as an acceleration error of 1 m/s2 with the weight 1. It matters
     where the tasks leave the torques free: the two legs do not work against each other in double support
-    (docs/likeness_trials.md, "What makes the forces human")."""
+    (docs/likeness_trials.md, "Which mechanisms make the forces human?")."""
 
     force_pivot: ForcePivot = ForcePivot()
     """Directions of the forces in double support."""

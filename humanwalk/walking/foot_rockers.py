@@ -48,13 +48,13 @@ class FootRockers:
 
     unloading: float = quantity(7.0, "1/s", 0.5, 1e4)
     """Rate at which the largest vertical force under the heel falls to zero at heel-off [body weights per second].
-    If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness_trials.md, "A heel
-    that lands and leaves with its load")."""
+    If the heel loses its load at once, the toes carry it until the ball is compressed (docs/likeness_trials.md, "Do
+    limits of the force under the heel help?")."""
 
     unloading_force: float = quantity(3.0, "", 0.1, 100.0)
     """Largest vertical force on a foot that is being unloaded, in body weights per load, in a step on one face. The
-    leading foot takes over before the trailing foot leaves the ground (docs/likeness_trials.md, "Unloading of the
-    trailing foot, and de Leva's body")."""
+    leading foot takes over before the trailing foot leaves the ground (docs/likeness_trials.md, "Do de Leva's body
+    and an unloading trailing foot help?")."""
 
     pitch: float = quantity(1.27, "rad", 0.0, 1.7)
     """Pitch of the foot at toe-off at `full_pitch_speed` and faster. It is smaller below."""
@@ -64,18 +64,19 @@ class FootRockers:
 
     speed_exponent: float = quantity(0.67, "", 0.0, 2.0)
     """`ball` and `pitch` are proportional to this power of the speed below `full_pitch_speed`. With 1 the ankle extends
-    too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness_trials.md)."""
+    too little at 0.9 m/s; with 0.4 the walk is less like people's (docs/likeness_trials.md, "Should the heel-off
+    depend on the speed?")."""
 
     late_rise: float = quantity(0.82, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
     toes: float = quantity(0.73, "rad", 0.0, 1.2)
     """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
-    (docs/likeness_trials.md, "What makes the forces human")."""
+    (docs/likeness_trials.md, "Which mechanisms make the forces human?")."""
 
     toe_range: float = quantity(0.24, "rad", 0.01, 0.6)
     """Half the range of pitch around `toes` in which the toes begin to turn with the foot; at most `toes`. If they
-    began at once, the planned forces would jump (docs/likeness_trials.md, "Slow walks")."""
+    began at once, the planned forces would jump (docs/likeness_trials.md, "What helps slow walks?")."""
 
     min_speed: float = quantity(0.2, "m/s", 0.0, 3.0)
     """Forward speed below which the feet leave the ground flat."""

@@ -25,7 +25,7 @@ class SwingParameters:
 
     mid_height: float = quantity(0.48, "", 0.2, 1.0)
     """Height of the ankle at half of the swing, relative to its apex at a quarter. In people, whose ankle rises at
-    heel-off, it is 0.5 (docs/likeness_trials.md)."""
+    heel-off, it is 0.5 (docs/likeness_trials.md, "Do torques as a task and people's swing help?")."""
 
     late_height: float = quantity(0.173, "", 0.0, 1.0)
     """The same at three quarters of the swing; in people 0.2."""
