@@ -1,7 +1,7 @@
 """Where the next foot goes: where balance requires it, within reach, and clear of the other leg.
 
 A foothold is a complex number x + iy [m] in the frame of the step: origin at the stance ankle, x along the heading.
-The limits were found with simulated pushes (docs/balance_trials.md, "What a push teaches").
+The limits were found with simulated pushes (docs/balance_trials.md, "What do traced falls show?").
 """
 
 import math
@@ -47,12 +47,12 @@ class StepPlacement:
 
     passing_acceleration: float = quantity(80.0, "m/s2", 10.0, 1e4)
     """Largest sideways acceleration on the way to that distance; the whole-body program follows up to 100 m/s2. Without
-    it a foot reaches 9 m/s, is thrown aside by half a meter, and pushes the body over (docs/balance_trials.md, "What a
-    push teaches")."""
+    it a foot reaches 9 m/s, is thrown aside by half a meter, and pushes the body over (docs/balance_trials.md, "What do
+    traced falls show?")."""
 
     max_com_distance: float = quantity(0.38, "m", 0.1, 1.0)
     """Largest distance of a foothold ahead of or behind the center of mass at touchdown. A foot that lands farther
-    ahead brakes the body so much that it falls backward (docs/balance_trials.md, "What a push teaches")."""
+    ahead brakes the body so much that it falls backward (docs/balance_trials.md, "What do traced falls show?")."""
 
     max_length: float = quantity(1.0, "m", 0.1, 2.0)
     """Largest distance of a foothold ahead of or behind the stance foot."""

@@ -16,11 +16,11 @@ from humanwalk.walking.walking_reference import FootReference, FootTask
 
 SHORT_STEP = 1.2
 """A step is short if its length times this factor is less than speed times duration. Ordinary steps, which end early by
-contact, are not (docs/balance_trials.md, "What a push teaches")."""
+contact, are not (docs/balance_trials.md, "What do traced falls show?")."""
 
 TOES_STRAIGHT = 0.6
 """Fraction of the swing after which the toes are straight: straightened at once they throw the foot up
-(docs/balance_trials.md)."""
+(docs/balance_trials.md, "What makes a walk regular, straight and cheap?")."""
 
 
 def rollover(

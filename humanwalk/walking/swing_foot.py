@@ -82,7 +82,8 @@ class SwingParameters:
     def raising_share(self, height: float) -> float:
         """How much of a step up a swing is that raises the foot by a height [m]: 0 to half of `flat_rise`, then to 1.
 
-        With less than half, feet leave stepping stones of unequal heights too steeply (docs/balance_trials.md).
+        With less than half, feet leave stepping stones of unequal heights too steeply (docs/balance_trials.md, "Which
+        rules does uneven ground need?").
         """
         return clip(2.0 * height / self.flat_rise - 1.0, 0.0, 1.0)
 
