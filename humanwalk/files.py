@@ -13,6 +13,7 @@ from humanwalk.quantity import ParameterError, printable
 
 READABLE = "a folder that you may read; check its permissions"
 WRITABLE = "a folder that you may write to, with room; choose another with -o"
+OUR_FOLDER = "a folder that you may write to, with room; change its permissions, or copy it"
 
 TEMPORARY_NAME = 80
 """Length of file name that a folder has to take [bytes]: a file that is being written has a longer name for a while."""
@@ -99,15 +100,32 @@ def require_new(path: Path, overwrite: bool) -> None:
     """Raise ParameterError, before the work that fills it, for a file that cannot be written, and for one of the user
     that is there already, unless it may be replaced.
     """
-    with file_errors(path, WRITABLE):
-        found = path.exists()
-        if found and not path.is_file():
-            raise ParameterError(f"-o {printable(path)}: a folder or device; allowed: a file; choose another name")
-        _require_writable(path.parent)
-    if found and not overwrite:
+    if _is_there(path, "-o ", "choose another name", WRITABLE) and not overwrite:
         raise ParameterError(
             f"-o {printable(path)}: is there already; allowed: a new file, or any with --overwrite; choose another name"
         )
+
+
+def require_replaceable(path: Path) -> None:
+    """Raise ParameterError, before the work that fills it, for a file of our own name that cannot be written."""
+    _is_there(path, "", "move it away", OUR_FOLDER)
+
+
+def _is_there(path: Path, option: str, fix: str, folder: str) -> bool:
+    """Whether a file is there; raises ParameterError where none can be written.
+
+    Args:
+        path: of the file.
+        option: that names it, for the error.
+        fix: of a folder or device in its place.
+        folder: what its folder has to be, and the fix.
+    """
+    with file_errors(path, folder):
+        found = path.exists()
+        if found and not path.is_file():
+            raise ParameterError(f"{option}{printable(path)}: a folder or device; allowed: a file; {fix}")
+        _require_writable(path.parent)
+    return found
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:

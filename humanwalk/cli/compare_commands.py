@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from humanwalk.cli.common import SHOW, OverwriteOption, app, console, stdout
-from humanwalk.files import require_new
+from humanwalk.files import require_new, require_replaceable
 from humanwalk.quantity import ParameterError, printable
 
 
@@ -29,13 +29,15 @@ def compare(
     from humanwalk.run.folder import Run
     from humanwalk.view.compare import difference_rows, falls, measure_rows, names_of, write_comparison
 
+    path = output or Path("comparison.html")
     if output is not None:
         if not page:
             raise ParameterError(
                 f"-o {printable(output)}: no page with --no-page; allowed: one of the two; leave one out"
             )
         require_new(output, overwrite)
-    path = output or Path("comparison.html")
+    elif page:
+        require_replaceable(path)
     opened = [Run.open(run) for run in runs]
     names = names_of(opened)
     for title, rows in (("measure", measure_rows(opened)), ("different field", difference_rows(opened))):

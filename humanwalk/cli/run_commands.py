@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from humanwalk.cli.common import INTERRUPTED, SHOW, OverwriteOption, app, console, counted_progress, stdout
-from humanwalk.files import require_new
+from humanwalk.files import require_new, require_replaceable
 
 RunArgument = Annotated[Path, typer.Argument(help="Folder of a run.")]
 ViewOption = Annotated[
@@ -138,9 +138,11 @@ def report(
     import json
 
     from humanwalk.run.folder import Run
-    from humanwalk.view.report import compare_run, terminal_tables, to_json, write_report
+    from humanwalk.view.report import REPORT, compare_run, terminal_tables, to_json, write_report
 
     opened = Run.open(run)
+    if not json_:
+        require_replaceable(opened.path / REPORT)
     with console.status("comparing with human gait"):
         comparison = compare_run(opened)
     if json_:

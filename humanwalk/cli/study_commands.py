@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
+from humanwalk.files import require_replaceable
 from humanwalk.quantity import ParameterError
 
 if TYPE_CHECKING:
@@ -118,10 +119,11 @@ def show(
     ] = None,
 ) -> None:
     """Print survival, means and effects of the factors, and write study.html with figures into the study's folder."""
-    from humanwalk.study.page import terminal_tables, write_study_figures, write_study_page
+    from humanwalk.study.page import PAGE, terminal_tables, write_study_figures, write_study_page
     from humanwalk.study.results import Results
 
     results = Results.read(study)
+    require_replaceable(study / PAGE)
     measures = results.measures(measure)
     for table in terminal_tables(results, measures):
         stdout.print(table)

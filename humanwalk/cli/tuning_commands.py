@@ -8,6 +8,7 @@ import typer
 
 from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
 from humanwalk.cli.study_commands import RunsByDefault, SchedulerOption, SlurmOption, WorkersOption, workers_client
+from humanwalk.files import require_replaceable
 
 if TYPE_CHECKING:
     from humanwalk.study.row import Row
@@ -68,10 +69,12 @@ def show(folder: Annotated[Path, typer.Argument(help="Folder of a tuning, finish
     """Print the best trial, write it as a scenario, best.yaml, and write a page with the history of the search."""
     from rich.table import Table
 
-    from humanwalk.study.trials import best, read_trials, write_best
-    from humanwalk.study.tuning_page import parameter_rows, value_rows, write_tuning_page
+    from humanwalk.study.trials import BEST, best, read_trials, write_best
+    from humanwalk.study.tuning_page import PAGE, parameter_rows, value_rows, write_tuning_page
 
     tuning, rows = read_trials(folder)
+    for name in (BEST, PAGE):
+        require_replaceable(folder / name)
     found = best(tuning, rows)
     if found is not None:
         parameters = Table("parameter", "low", "start", "best", "high")

@@ -10,7 +10,7 @@ from scipy.io import savemat
 
 from humanwalk.exchange.c3d import write_c3d
 from humanwalk.exchange.opensim import write_opensim
-from humanwalk.files import WRITABLE, file_errors, make_folder, require_new, write_whole
+from humanwalk.files import WRITABLE, file_errors, make_folder, require_new, require_replaceable, write_whole
 from humanwalk.measures.signals import matrix
 from humanwalk.measures.summary_rows import EXTERNAL_SUPPORT
 from humanwalk.quantity import ParameterError
@@ -93,7 +93,10 @@ def export_run(run: Run, to: str, output: Path | None = None, *, overwrite: bool
     with file_errors(folder, WRITABLE), tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
         written = {folder / file.name: file for file in FORMATS[to](run, Path(beside))}
         for path in written:
-            require_new(path, overwrite or output is None)
+            if output is None:
+                require_replaceable(path)
+            else:
+                require_new(path, overwrite)
         for path, file in written.items():
             file.replace(path)
     return list(written)

@@ -457,6 +457,12 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(
     assert said in refusal(*command, "-o", name, "--overwrite")
 
 
+def test_a_comparison_that_cannot_be_written_is_refused_before_the_runs_are_read(refusal: Any, tmp_path: Path) -> None:
+    (tmp_path / "comparison.html").mkdir()
+    said = "humanwalk: comparison.html: a folder or device; allowed: a file; move it away"
+    assert refusal("compare", "run", "run") == said
+
+
 @pytest.mark.parametrize(
     ("more", "named"),
     [

@@ -173,6 +173,16 @@ def test_a_study_is_simulated_and_shown(short_study: Study, tmp_path: Path) -> N
     assert str(folder / PAGE) in result.stderr
 
 
+def test_a_page_that_cannot_be_written_is_refused_before_the_tables(short_study: Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    with open_journal(folder, short_study) as journal:
+        journal.append(0, simulate_row(Job(0, short_study.scenario_at(short_study.points[0]))))
+    (folder / PAGE).mkdir()
+    result: Any = CliRunner().invoke(app, ["study", "show", str(folder)])
+    assert str(result.exception) == f"{folder / PAGE}: a folder or device; allowed: a file; move it away"
+    assert result.stdout == ""
+
+
 def test_a_study_without_a_finished_run_is_not_shown(short_study: Study, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     with open_journal(folder, short_study):

@@ -5,15 +5,27 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from humanwalk.cli.main import app
 from humanwalk.scenario import load_scenario
 from humanwalk.study.results import MAX_MAGNITUDE
 from humanwalk.study.row import Row
 from humanwalk.study.trial import RUNS
-from humanwalk.study.trials import TRIAL, best, open_table, pareto_front, read_trials, score_of, trial_row, write_best
+from humanwalk.study.trials import (
+    BEST,
+    TRIAL,
+    best,
+    open_table,
+    pareto_front,
+    read_trials,
+    score_of,
+    trial_row,
+    write_best,
+)
 from humanwalk.study.tuning import Tuning, parse_tuning, start_values
 from humanwalk.study.tuning_figures import parameters
-from humanwalk.study.tuning_page import parameter_rows, value_rows, write_tuning_page
+from humanwalk.study.tuning_page import PAGE, parameter_rows, value_rows, write_tuning_page
 from humanwalk.view.plots.drawing import save
 
 TUNING = """
@@ -66,6 +78,15 @@ def test_the_page_shows_the_best_trial_and_every_figure(sampler: str, pictures: 
     assert f"Best: trial {found[TRIAL]}" in page
     assert f"{found['parameters.controller.balanced.planner.dcm_gain']:.4g}" in page
     assert page.count("<img ") == pictures
+
+
+@pytest.mark.parametrize("name", [BEST, PAGE])
+def test_a_file_that_cannot_be_written_is_refused_before_the_tables(name: str, tmp_path: Path) -> None:
+    filled(tmp_path, "cma_es", 4)
+    (tmp_path / name).mkdir()
+    result = CliRunner().invoke(app, ["tune", "show", str(tmp_path)])
+    assert str(result.exception) == f"{tmp_path / name}: a folder or device; allowed: a file; move it away"
+    assert result.stdout == ""
 
 
 def test_texts_of_the_file_are_no_markup(tmp_path: Path) -> None:

@@ -109,6 +109,15 @@ def test_every_plot_of_a_walk_is_written_under_its_name(make_run: Callable[..., 
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
 
 
+def test_a_plot_that_cannot_be_written_is_refused_before_the_first_is_drawn(make_run: Callable[..., Any]) -> None:
+    run = make_run()
+    last = run.plots / f"{list(PLOTS)[-1]}.png"
+    last.mkdir(parents=True)
+    with pytest.raises(ParameterError, match=rf"^{last}: a folder or device; allowed: a file; move it away"):
+        write_plots(run)
+    assert list(run.plots.iterdir()) == [last]
+
+
 def test_all_of_figures_5_8_to_5_21_exist() -> None:
     numbers = [int(name.split("_")[2]) for name in PLOTS if name.startswith("figure_5_")]
     assert numbers == list(range(8, 22))

@@ -157,6 +157,15 @@ def test_command_writes_the_page_and_prints_the_tables(make_run: Callable[..., A
     assert (run.path / REPORT).is_file()
 
 
+def test_page_that_cannot_be_written_is_refused_before_the_comparison(
+    make_run: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = make_run()
+    (run.path / REPORT).mkdir()
+    monkeypatch.setattr("humanwalk.view.report.compare_run", lambda run: pytest.fail("compared"))
+    assert str(report(run.path).exception) == f"{run.path / REPORT}: a folder or device; allowed: a file; move it away"
+
+
 def test_json_is_all_that_is_printed_and_nothing_is_written(make_run: Callable[..., Any]) -> None:
     run = make_run()
     result = report(run.path, "--json")

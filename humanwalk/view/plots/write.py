@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from humanwalk.files import make_folder
+from humanwalk.files import make_folder, require_replaceable
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import FORMATS, save
@@ -72,8 +72,11 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
     names = select(only or ())
     run.require_physics()
     make_folder(run.plots)
-    figures = ((name, PLOTS[name](run)) for name in names)
-    return [save(figure, run.plots / f"{name}.{format}") for name, figure in figures if figure is not None]
+    paths = {name: run.plots / f"{name}.{format}" for name in names}
+    for path in paths.values():
+        require_replaceable(path)
+    figures = ((path, PLOTS[name](run)) for name, path in paths.items())
+    return [save(figure, path) for path, figure in figures if figure is not None]
 
 
 def select(only: Sequence[str]) -> list[str]:
