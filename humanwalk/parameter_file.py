@@ -216,10 +216,20 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, defaul
             )
         inherited = fields[key].default if default is None else getattr(default, key)
         arguments[key] = _build_field(fields[key], hints[key], entry, place / name, inherited)
+    needed = required_fields(kind) if make is kind else []
+    if missing := " and ".join(name for name in needed if name not in arguments):
+        raise ParameterError(
+            f"{place}: {missing} missing; allowed: a group with {' and '.join(needed)}; write {missing}"
+        )
     try:
         return make(**arguments)
     except ParameterError as error:
         raise ParameterError(f"{place / str(error)}") from None
+
+
+def required_fields(kind: Any) -> list[str]:
+    """Names of the fields of a dataclass that have no default."""
+    return [of.name for of in dataclasses.fields(kind) if of.default is of.default_factory is dataclasses.MISSING]
 
 
 def _build_field(field: dataclasses.Field[Any], kind: Any, value: Any, place: _Place, default: Any) -> Any:

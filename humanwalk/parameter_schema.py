@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any, Literal
 
-from humanwalk.parameter_file import MAX_ENTRIES, plain
+from humanwalk.parameter_file import MAX_ENTRIES, plain, required_fields
 from humanwalk.quantity import only_field
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -53,6 +53,8 @@ def _define(kind: type[Any], definitions: dict[str, Schema], also: Also) -> str:
             field.name: _field(field, hints[field.name], documents.get(field.name, ""), definitions, also)
             for field in dataclasses.fields(kind)
         }
+        if required := required_fields(kind):
+            schema["required"] = required
     return name
 
 

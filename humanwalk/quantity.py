@@ -35,6 +35,10 @@ NONE: Metadata = MappingProxyType({})
 """Metadata of a field that has none."""
 
 
+REQUIRED: Any = dataclasses.MISSING
+"""Instead of the default of a quantity that a file has to give."""
+
+
 class ParameterError(ValueError):
     """An input that cannot be used. The message is one printable line: field, value, allowed range, fix."""
 
@@ -69,8 +73,8 @@ def number_of(text: str) -> float:
     return float(text)
 
 
-def quantity(default: float, unit: str, low: float, high: float) -> Any:
-    """Dataclass field for a number in [low, high], in the given unit ("" for a pure number)."""
+def quantity(default: Any, unit: str, low: float, high: float) -> Any:
+    """Dataclass field for a number in [low, high], in the given unit ("" for a pure number); see `REQUIRED`."""
     return dataclasses.field(default=default, metadata={"unit": unit, "low": low, "high": high})
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from humanwalk.parameter_file import build, dump, located, read_fields
-from humanwalk.quantity import ParameterError, did_you_mean, quantity
+from humanwalk.quantity import REQUIRED, ParameterError, did_you_mean, quantity
 from humanwalk.scenario import Scenario
 from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.study.design import Rows
@@ -41,8 +41,8 @@ MAX_TRIALS = 100_000
 class Range:
     """Where a parameter may lie."""
 
-    low: float = quantity(0.0, "", -1e9, 1e9)
-    high: float = quantity(1.0, "", -1e9, 1e9)
+    low: float = quantity(REQUIRED, "", -1e9, 1e9)
+    high: float = quantity(REQUIRED, "", -1e9, 1e9)
 
     log: bool = False
     """Whether its logarithm is searched: for weights and stiffnesses, whose order of magnitude counts."""

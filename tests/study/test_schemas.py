@@ -53,6 +53,13 @@ def test_every_shipped_file_names_its_schema_and_is_valid(kind: str, path: Path)
     assert errors(kind, read_yaml(text, path.name)) == []
 
 
+def test_a_field_without_default_is_required() -> None:
+    tuning = {"parameters": {"seed": {"low": 0.0}}}
+    assert errors("tuning", tuning) == ["'high' is a required property"]
+    with pytest.raises(ParameterError, match=r"^parameters\.seed: high missing; allowed: a group with low and high"):
+        build(FORMATS["tuning"], tuning)
+
+
 @pytest.mark.parametrize("name", shipped_scenarios())
 def test_a_complete_scenario_is_valid(name: str) -> None:
     assert errors("scenario", plain(load_scenario(name))) == []

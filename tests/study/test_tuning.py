@@ -79,7 +79,12 @@ def test_shipped_tunings_are_valid_and_survive_writing(name: str, tmp_path: Path
         ),
         ({"parameters": f"{{{GAIN}: {{low: 1.5, high: 2.0}}}}"}, "the scenario's 1 is not within 1.5 to 2; allowed: "),
         ({"parameters": f"{{{GAIN}: {{low: 0.5, high: 50.0}}}}"}, rf"^{GAIN}: 50 is out of range; allowed: 0 to 5"),
-        ({"parameters": f"{{{GAIN}s: {{low: 0.5}}}}"}, "has no dcm_gains there; allowed: .*; did you mean dcm_gain"),
+        (
+            {"parameters": f"{{{GAIN}s: {{low: 0.5, high: 2.0}}}}"},
+            "has no dcm_gains there; allowed: .*; did you mean dcm_gain",
+        ),
+        ({"parameters": f"{{{GAIN}: {{}}}}"}, rf"^tuning, line 2: parameters\.{GAIN}: low and high missing; allowed: "),
+        ({"parameters": f"{{{GAIN}: {{low: 0.5}}}}"}, r"high missing; allowed: a group with low and high; write high$"),
         (
             {"parameters": "{seed: {low: -1.0, high: 9.0}}"},
             "parameters.seed: 0 is not a number with decimals; allowed: ",
