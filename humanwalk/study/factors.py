@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import truncnorm
 
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError, did_you_mean, only, printable, quantity
+from humanwalk.quantity import REQUIRED, ParameterError, did_you_mean, only, printable, quantity
 from humanwalk.yaml_text import shown
 
 MAX_LEVELS = 100_000
@@ -74,8 +74,8 @@ class Values(Factor):
 class Range(Factor):
     """Equally spaced numbers from low to high; samples are uniformly distributed between them."""
 
-    low: float = 0.0
-    high: float = 1.0
+    low: float
+    high: float
     number: int = quantity(5, "", 2, MAX_LEVELS)
 
     def __post_init__(self) -> None:
@@ -96,8 +96,8 @@ class Range(Factor):
 class LogRange(Factor):
     """Positive numbers from low to high with equal ratios; samples have uniformly distributed logarithms."""
 
-    low: float = 0.1
-    high: float = 10.0
+    low: float
+    high: float
     number: int = quantity(5, "", 2, MAX_LEVELS)
 
     def __post_init__(self) -> None:
@@ -120,8 +120,8 @@ class LogRange(Factor):
 class Uniform(Factor):
     """A uniform distribution between low and high."""
 
-    low: float = 0.0
-    high: float = 1.0
+    low: float
+    high: float
 
     def __post_init__(self) -> None:
         """Raise ParameterError unless low < high."""
@@ -135,8 +135,8 @@ class Uniform(Factor):
 class Normal(Factor):
     """A normal distribution, truncated to low and high where these are given."""
 
-    mean: float = 0.0
-    standard_deviation: float = quantity(1.0, "", 1e-12, 1e12)
+    mean: float
+    standard_deviation: float = quantity(REQUIRED, "", 1e-12, 1e12)
     low: float = -math.inf
     high: float = math.inf
 

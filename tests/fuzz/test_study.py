@@ -57,7 +57,7 @@ def test_file(fuzzer: Any) -> None:
     large = [
         b"factors: {" + b",".join(b"f%d: [1, 2]" % i for i in range(3000)) + b"}",
         b"design: {latin_hypercube: {number: 200000}}\nfactors: {"
-        + b",".join(b"f%d: {uniform: {}}" % i for i in range(1000))
+        + b",".join(b"f%d: {uniform: {low: 0, high: 1}}" % i for i in range(1000))
         + b"}",
         b"factors: {duration: [" + b"1," * 30_000 + b"]}",
         b"factors: {a" + b".a" * 30_000 + b": [1]}",

@@ -78,12 +78,12 @@ def test_sobol_number_is_a_power_of_two() -> None:
 @pytest.mark.parametrize(
     ("design", "chosen"),
     [
-        (FullFactorial(), {"a": Unmade(number=1000), "b": Unmade(number=1000)}),
-        (OneAtATime(), {str(i): Unmade(number=100_000) for i in range(200)}),
+        (FullFactorial(), {"a": Unmade(0.0, 1.0, number=1000), "b": Unmade(0.0, 1.0, number=1000)}),
+        (OneAtATime(), {str(i): Unmade(0.0, 1.0, number=100_000) for i in range(200)}),
         (FullFactorial(), {str(i): Seeds(0, 100_000) for i in range(1000)}),
         (FullFactorial(), {str(i): Seeds(0, 2) for i in range(1000)}),
         (OneAtATime(), {str(i): Seeds(0, MAX_POINTS // 2) for i in range(4)}),
-        (LatinHypercube(MAX_POINTS), {str(i): Uniform() for i in range(1000)}),
+        (LatinHypercube(MAX_POINTS), {str(i): Uniform(0.0, 1.0) for i in range(1000)}),
     ],
 )
 def test_too_many_points_are_refused_before_they_are_made(design: Any, chosen: Any) -> None:

@@ -106,7 +106,7 @@ def test_distributions_have_no_levels(name: str) -> None:
         lambda: LogRange(0.0, 1.0),
         lambda: Uniform(2.0, 1.0),
         lambda: Normal(0.0, 1.0, low=1.0, high=1.0),
-        lambda: Normal(math.inf),
+        lambda: Normal(math.inf, 1.0),
         lambda: Normal(0.0, 1.0, low=1e200, high=2e200),
         lambda: Variants({}),
     ],

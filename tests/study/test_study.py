@@ -97,6 +97,16 @@ def test_column_shows_the_scenarios_value_where_a_point_has_none() -> None:
         ("factors: {duration: [.nan]}", r"factors\.duration\.values\.0: nan cannot be a value"),
         ("factors: {push: {variants: {a: 3}}}", r"factors\.push\.variants\.a: 3 is not a mapping"),
         ("factors: {duration: {range: {mean: 3.0}}}", r"no such field; .*; it belongs to factors\.NAME\.normal$"),
+        (
+            "factors: {duration: {range: {number: 5}}}",
+            r"^study, line 1: factors\.duration\.range: low and high mi",
+        ),
+        ("factors: {duration: {log_range: {high: 5}}}", r"factors\.duration\.log_range: low missing; allowed: "),
+        ("factors: {duration: uniform}", r"factors\.duration\.uniform: low and high missing; allowed: "),
+        (
+            "factors: {duration: {normal: {mean: 5}}}",
+            "normal: standard_deviation missing; allowed: a group with mean ",
+        ),
         ("design: sobl", "did you mean sobol"),
         ("keep: everything", "keep: 'everything' is unknown; allowed: summary, runs"),
         ("scenario: tesis", "did you mean thesis"),
@@ -119,8 +129,8 @@ def test_files_that_are_no_study_are_refused_in_one_line(text: str, match: str) 
         ("factors: {controller.balanced.control_period: [0.006]}", "controller is 'thesis'"),
         ("set: {duration: -1}", r"^duration: -1 is out of range"),
         ("set: {duration.x: -1}", r"duration is 15\.0"),
-        ("factors: {seed: {uniform: {}}}", "latin_hypercube or sobol"),
-        ("factors: {seed: {range: {}}}", "0.0 is not a whole number"),
+        ("factors: {seed: {uniform: {low: 0, high: 1}}}", "latin_hypercube or sobol"),
+        ("factors: {seed: {range: {low: 0, high: 1}}}", "0.0 is not a whole number"),
     ],
 )
 def test_points_that_cannot_be_simulated_are_refused_with_their_values(text: str, match: str) -> None:
