@@ -4,6 +4,8 @@ import logging
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from enum import Enum
+from typing import Any
 
 from typer import TyperException
 
@@ -67,10 +69,27 @@ def _message(error: Exception) -> str:
         case OSError():
             return _file_error(error)
         case TyperException():
-            message, context = error.format_message().rstrip("."), getattr(error, "ctx", None)
+            message, context = _option_error(error).rstrip("."), getattr(error, "ctx", None)
             return f"{message}; see {context.command_path} --help" if message and context else message
         case _:
             return str(error)
+
+
+def _option_error(error: TyperException) -> str:
+    """The message of typer; with the value and what is allowed, which typer leaves out, for a number or a choice."""
+    message = error.format_message()
+    of_pydantic: Any = error.__cause__
+    if not hasattr(of_pydantic, "errors"):
+        return message
+    option: Any = getattr(error, "param", None)
+    kind = option.type_descriptor.annotation
+    if issubclass(kind, Enum):
+        allowed = ", ".join(kind)
+    else:
+        ends = (("from", option.min), ("to", option.max))
+        numbers = "whole numbers" if kind is int else "numbers"
+        allowed = " ".join((numbers, *(f"{word} {end:g}" for word, end in ends if end is not None)))
+    return f"{message.partition(': ')[0]}: {of_pydantic.errors()[0]['input']}; allowed: {allowed}"
 
 
 def _file_error(error: OSError) -> str:

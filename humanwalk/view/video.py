@@ -18,7 +18,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from humanwalk.extras import missing_package
 from humanwalk.files import make_folder, write_whole
-from humanwalk.quantity import ParameterError, check, quantity, require_in_range
+from humanwalk.quantity import ParameterError, check, number_of, quantity, require_in_range
 from humanwalk.run.fall_picture import replay_duration
 from humanwalk.run.folder import Run
 from humanwalk.view.browser import open_stage, run_browsers
@@ -123,16 +123,19 @@ def check_picture(width: int, height: int, view: str) -> None:
 
 def parse_size(text: str) -> tuple[int, int]:
     """Width and height from text such as "1280x720"."""
-    match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
+    match = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", text)
     if match is None:
-        raise ParameterError(f"--size {text}: invalid; allowed: WIDTHxHEIGHT in pixels; like 1280x720")
+        low, high = SIZE_RANGE
+        raise ParameterError(
+            f"--size {text}: invalid; allowed: WIDTHxHEIGHT in pixels, from {low} to {high}; like 1280x720"
+        )
     return int(match[1]), int(match[2])
 
 
 def parse_times(text: str) -> list[float]:
     """Times [s] from text such as "1.0,1.1,1.2"."""
     try:
-        return [float(word) for word in text.split(",")]
+        return [number_of(word) for word in text.split(",")]
     except ValueError:
         raise ParameterError(f"--times {text}: invalid; allowed: seconds separated by commas; like 1.0,1.2") from None
 

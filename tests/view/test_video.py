@@ -65,10 +65,10 @@ def test_a_late_time_is_not_taken_for_milliseconds() -> None:
 def test_sizes_and_times_are_parsed() -> None:
     assert parse_size("1280x720") == (1280, 720)
     assert parse_times("1.0,1.5") == [1.0, 1.5]
-    for text in ("1280", "1280x", "x720", "12.5x10", "1280X720p"):
-        with pytest.raises(ParameterError, match="allowed: WIDTHxHEIGHT"):
+    for text in ("1280", "1280x", "x720", "12.5x10", "1280X720p", "\u0661280x720"):
+        with pytest.raises(ParameterError, match="allowed: WIDTHxHEIGHT in pixels, from 64 to 3840"):
             parse_size(text)
-    for text in ("", "1.0;2.0", "1.0,"):
+    for text in ("", "1.0;2.0", "1.0,", "1_0"):
         with pytest.raises(ParameterError, match="seconds separated by commas"):
             parse_times(text)
 
