@@ -127,7 +127,7 @@ class Rows(Design):
             raise ParameterError("design.rows.file: empty; allowed: the path of a CSV file; write it")
         header, rows = _read_rows(Path(self.file), where)
         _require_number(len(rows), len(header))
-        return [
+        points = [
             {
                 name: _cell(cell, f"{where}: row {number}, column {printable(name)}")
                 for name, cell in zip(header, cells, strict=True)
@@ -135,6 +135,8 @@ class Rows(Design):
             }
             for number, cells in enumerate(rows, 1)
         ]
+        _require_different(points, where)
+        return points
 
 
 DESIGNS: dict[str, type[Design]] = {
@@ -171,6 +173,22 @@ def _require_number(points: int, factors: int) -> None:
             f"design: {points} points; allowed: 1 to {MAX_POINTS}; use fewer levels, or another design, or several "
             "studies"
         )
+
+
+def _require_different(points: Sequence[Point], where: str) -> None:
+    """Raise ParameterError for a row of a file that comes twice: its runs would be the same."""
+    numbers: dict[Any, int] = {}
+    for number, point in enumerate(points, 1):
+        first = numbers.setdefault(_hashable(point), number)
+        if first != number:
+            raise ParameterError(f"{where}: row {number} is row {first} again; allowed: every row once; remove one")
+
+
+def _hashable(value: Any) -> Any:
+    """A value that is equal to that of an equal value, and can be a key."""
+    if isinstance(value, Mapping):
+        return frozenset((name, _hashable(entry)) for name, entry in value.items())
+    return tuple(map(_hashable, value)) if isinstance(value, list) else value
 
 
 def _read_rows(path: Path, where: str) -> tuple[list[str], list[list[str]]]:

@@ -117,6 +117,8 @@ def test_rows_are_those_of_the_file(tmp_path: Path) -> None:
         (",b\n1,2\n", "the header is empty"),
         ('a\n"1', "not CSV"),
         ("a\n" + "1\n" * (MAX_POINTS + 1) + '"not read', f"more than {MAX_POINTS} rows"),
+        ("a,b\n1,2\n1,\n,\n1.0,2\n", "row 4 is row 1 again; allowed: every row once; remove one"),
+        ('a,b\n"[{""x"": 1}]",\n"[{""x"":1.0}]", \n', "row 2 is row 1 again"),
         ("a,b\n" + "1,2\n" * 10 + '3\n"not read', "row 11 has 1 values"),
     ],
 )
