@@ -158,6 +158,13 @@ def did_you_mean(text: str, choices: Sequence[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
+def near_names(text: str, choices: Sequence[str]) -> str:
+    """End of an error message: up to three choices that have the text in them, else similar ones, else nothing."""
+    containing = [choice for choice in choices if text and text in choice]
+    near = containing[:3] or difflib.get_close_matches(text, choices, cutoff=0.5)
+    return f"; near: {', '.join(near)}" if near else ""
+
+
 def near_or_all(text: str, choices: Sequence[str]) -> str:
     """End of an error message that counts many choices: the most similar one, else all of them."""
     return did_you_mean(text, choices) or f": {', '.join(choices)}"

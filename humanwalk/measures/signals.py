@@ -1,6 +1,5 @@
 """The table of a run's signals: one row per sample, one named column with a unit per number."""
 
-import difflib
 import re
 from collections.abc import Sequence
 
@@ -8,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.numerics import Array
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, near_names
 
 TIME = "time_s"
 
@@ -49,8 +48,8 @@ def column_of(columns: Sequence[str], name: str) -> str:
     for column in columns:
         if UNIT.sub("", column) == name:
             return column
-    near = difflib.get_close_matches(name, columns, n=3, cutoff=0.5)
-    raise ParameterError(f"{name}: no such signal; allowed: the {len(columns)} of the run; near: {', '.join(near)}")
+    allowed = f"the {len(columns)} of the run, signals.column_names"
+    raise ParameterError(f"{name}: no such signal; allowed: {allowed}{near_names(str(name), columns)}")
 
 
 def matrix(signals: pa.Table, columns: Sequence[str]) -> Array:

@@ -1,6 +1,5 @@
 """The finished rows of a study by what they are: factors that vary, survival, measures with units."""
 
-import difflib
 import json
 import re
 from collections import Counter
@@ -15,7 +14,7 @@ import pyarrow as pa
 
 from humanwalk.measures.signals import UNIT, unit_of
 from humanwalk.numerics import Array, Mask
-from humanwalk.quantity import ParameterError, numbers_of, printable
+from humanwalk.quantity import ParameterError, near_names, numbers_of, printable
 from humanwalk.study.row import run_columns
 from humanwalk.study.statistics import FactorArray, factor_array, is_numeric
 from humanwalk.study.study import Study
@@ -131,9 +130,7 @@ class Results:
                 f"{wanted}: no such measure, the column has no measured numbers; {allowed}, like "
                 f"{', '.join(USUAL_MEASURES)}"
             )
-        near = [column for column in columns if name in column] or difflib.get_close_matches(name, columns, cutoff=0.4)
-        hint = f"; near: {', '.join(near[:3])}" if near else ""
-        raise ParameterError(f"{wanted}: no such measure; {allowed}{hint}")
+        raise ParameterError(f"{wanted}: no such measure; {allowed}{near_names(name, columns)}")
 
     def varies(self, name: str) -> bool:
         """Whether a measure differs between rows by more than rounding."""

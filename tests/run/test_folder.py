@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -60,6 +61,22 @@ def test_signals_know_where_they_come_from(outcome: Outcome, tmp_path: Path) -> 
     assert metadata["scenario"] == "thesis"
     assert metadata["seed"] == 5
     assert {"humanwalk", "drake", "numpy"} <= metadata["versions"].keys()
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("com.xx", "near: com.x_m, "),
+        ("com.", "near: com.x_m, com.y_m, com.z_m$"),
+        ("?", "column_names$"),
+        (None, "column_names$"),
+    ],
+)
+def test_an_unknown_signal_is_refused_with_near_ones_if_there_are_any(
+    outcome: Outcome, tmp_path: Path, name: Any, near: str
+) -> None:
+    with pytest.raises(ParameterError, match=rf"no such signal; allowed: the \d+ of the run, signals\..*{near}"):
+        outcome.save(tmp_path / "run")[name]
 
 
 @pytest.mark.parametrize("missing", [SCENARIO, SIGNALS, SUMMARY])
