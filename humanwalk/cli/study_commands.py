@@ -121,14 +121,17 @@ def show(
     """Print survival, means and effects of the factors, and write study.html with figures into the study's folder."""
     from humanwalk.study.page import PAGE, terminal_tables, write_study_figures, write_study_page
     from humanwalk.study.results import Results
+    from humanwalk.view.plots.drawing import require_format
 
+    if figures is not None:
+        require_format("--figures", figures)
     results = Results.read(study)
     require_replaceable(study / PAGE)
     measures = results.measures(measure)
     for table in terminal_tables(results, measures):
         stdout.print(table)
     with console.status("drawing"):
-        written = write_study_figures(study, results, measures, figures) if figures else []
+        written = write_study_figures(study, results, measures, figures) if figures is not None else []
         written.append(write_study_page(study, results, measures))
     for path in written:
         console.print(f"{path}", soft_wrap=True)

@@ -11,7 +11,6 @@ from rich import box
 from rich.table import Table
 
 from humanwalk.files import make_folder, require_inside
-from humanwalk.quantity import ParameterError
 from humanwalk.study.figures import effects, greatest, measure_figures
 from humanwalk.study.results import SURVIVAL, Results
 from humanwalk.study.statistics import (
@@ -26,7 +25,7 @@ from humanwalk.study.statistics import (
     ranked_effects,
 )
 from humanwalk.view.page import heading, notes, paragraph, picture, table, write_page
-from humanwalk.view.plots.drawing import FORMATS, save
+from humanwalk.view.plots.drawing import require_format, save
 
 PAGE = "study.html"
 """Name of the page in the folder of a study."""
@@ -206,8 +205,7 @@ def write_study_figures(folder: Path, results: Results, measures: Sequence[str],
     Raises:
         ParameterError: they cannot be written, `plots` leads out of the folder, or the format is unknown.
     """
-    if form not in FORMATS:
-        raise ParameterError(f"--figures {form}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
+    require_format("--figures", form)
     plots = require_inside(folder, folder / PLOTS)
     make_folder(plots)
     return [

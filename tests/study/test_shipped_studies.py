@@ -183,6 +183,12 @@ def test_a_page_that_cannot_be_written_is_refused_before_the_tables(short_study:
     assert result.stdout == ""
 
 
+@pytest.mark.parametrize("form", ["eps", ""])
+def test_an_unknown_format_is_refused_before_the_tables(short_study: Study, tmp_path: Path, form: str) -> None:
+    result: Any = CliRunner().invoke(app, ["study", "show", str(tmp_path), "--figures", form])
+    assert str(result.exception) == f"--figures {form}: unknown; allowed: png, svg, pdf; choose one of them"
+
+
 def test_a_study_without_a_finished_run_is_not_shown(short_study: Study, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     with open_journal(folder, short_study):

@@ -17,6 +17,7 @@ from humanwalk.body import Side
 from humanwalk.body.visual import SIDE_COLORS
 from humanwalk.files import write_whole
 from humanwalk.numerics import Array, Mask
+from humanwalk.quantity import ParameterError
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -92,6 +93,12 @@ def true_proportions(figure: Figure) -> None:
     """Set equal scales for x and y in a figure of one axes."""
     figure.axes[0].set_aspect("equal")
     figure.set_layout_engine("compressed")
+
+
+def require_format(option: str, form: str) -> None:
+    """Raise ParameterError for an unknown format of figures, which an option names."""
+    if form not in FORMATS:
+        raise ParameterError(f"{option} {form}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
 
 
 def save(figure: Figure, path: Path, dpi: float = DPI) -> Path:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from humanwalk.files import make_folder, require_replaceable
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
-from humanwalk.view.plots.drawing import FORMATS, save
+from humanwalk.view.plots.drawing import require_format, save
 from humanwalk.view.plots.gait_cycle import (
     gait_cycle_angles,
     gait_cycle_hip_and_foot,
@@ -67,8 +67,7 @@ def write_plots(run: Run, only: Sequence[str] | None = None, format: str = "png"
     Raises:
         ParameterError: An unknown name or format, a run without physics, or a file that cannot be written.
     """
-    if format not in FORMATS:
-        raise ParameterError(f"--format {format}: unknown; allowed: {', '.join(FORMATS)}; choose one of them")
+    require_format("--format", format)
     names = select(only or ())
     run.require_physics()
     make_folder(run.plots)
