@@ -16,12 +16,17 @@ def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
     return dict(fields_of(kind))
 
 
-def override(kind: type[Any], data: dict[str, Any], field: str, text: str) -> None:
+def override(kind: type[Any], data: dict[str, Any], field: str, text: Any) -> None:
     """Replace a value in the mapping of a dataclass of parameters by YAML text; see `replace_value`.
+
+    From Python, a value that is no text is taken as it is.
 
     Raises:
         ParameterError: the text is not YAML, or the field cannot be replaced.
     """
+    if not isinstance(text, str):
+        replace_value(kind, data, field, text)
+        return
     # Indented, so that no line of the text begins another field.
     indented = "\n ".join(text.splitlines())
     replace_value(kind, data, field, read_yaml(f"value: {indented}", f"--set {field}")["value"])

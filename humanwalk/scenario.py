@@ -158,13 +158,13 @@ def shipped_scenarios() -> dict[str, Path]:
     return shipped_files("scenarios")
 
 
-def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Scenario:
+def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None = None) -> Scenario:
     """Load a shipped scenario by name, or any scenario by the path of its file.
 
     Args:
         name_or_path: "thesis", or a YAML file.
-        overrides: values to replace by dotted field name, each written as in YAML, e.g.
-            {"controller.thesis.gait.path.step_height": "0.12"}.
+        overrides: values to replace by dotted field name, as YAML text or as they are, e.g.
+            {"controller.thesis.gait.path.step_height": "0.12", "duration": 3}.
 
     Raises:
         ParameterError: no such scenario, not a scenario, or a value that cannot be used; one line.
@@ -174,7 +174,7 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, str] | None 
 
 
 def parse_scenario(
-    text: str, overrides: Mapping[str, str] | None = None, name: str = "scenario", folder: Path = Path()
+    text: str, overrides: Mapping[str, Any] | None = None, name: str = "scenario", folder: Path = Path()
 ) -> Scenario:
     """Scenario from YAML text; see `load_scenario`.
 

@@ -25,6 +25,8 @@ def named_file(kind: str, name_or_path: str | Path, shipped: Mapping[str, Path])
     Raises:
         ParameterError: there is none.
     """
+    if not isinstance(name_or_path, str | Path):
+        raise ParameterError(f"{kind}: {name_or_path!r}: no name; allowed: a name or the path of a file; write one")
     path = shipped.get(str(name_or_path), Path(name_or_path))
     # Path.exists raises for names that are too long.
     if not os.path.exists(path):

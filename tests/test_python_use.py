@@ -61,6 +61,23 @@ def test_a_name_in_place_of_a_scenario_produces_an_error_with_the_fix(function: 
         function(argument)
 
 
+def test_a_value_that_replaces_one_is_text_or_itself() -> None:
+    push = [{"time": 0.3, "impulse": 4}]
+    plain = humanwalk.load_scenario("walk", {"duration": 0.5, "contact": "point", "pushes.given": push})
+    text = humanwalk.load_scenario("walk", {"duration": "0.5", "contact": "point", "pushes.given": str(push)})
+    assert plain == text
+    assert (plain.duration, plain.pushes.given[0].time) == (0.5, 0.3)
+    with pytest.raises(humanwalk.ParameterError, match=r"^duration: None is not a number; allowed: 0\.001 to 3600 s"):
+        humanwalk.load_scenario("walk", {"duration": None})
+
+
+@pytest.mark.parametrize("load", [humanwalk.load_scenario, humanwalk.load_study, humanwalk.load_tuning])
+@pytest.mark.parametrize("argument", [None, 3, {"duration": 3}])
+def test_what_is_no_name_is_refused_in_one_line(load: Any, argument: Any) -> None:
+    with pytest.raises(humanwalk.ParameterError, match="no name; allowed: a name or the path of a file; write one"):
+        load(argument)
+
+
 def test_builders_that_do_not_fit_the_controller_name_the_one_that_does(tmp_path: Path) -> None:
     (tmp_path / "motion.csv").touch()
     recorded = '{"recorded": {"angles": "%s", "kinematic": true}}' % (tmp_path / "motion.csv")
