@@ -37,7 +37,8 @@ def located(text: str, name: str, replaced: Collection[str] = ()) -> Iterator[No
         yield
     except ParameterError as error:
         field = str(error).partition(":")[0]
-        line = None if any(f"{field}.".startswith(f"{other}.") for other in replaced) else line_of(text, field)
+        is_other = any(f"{field}.".startswith(f"{other}.") or other.startswith(f"{field}.") for other in replaced)
+        line = None if is_other else line_of(text, field)
         if line is None:
             raise
         raise ParameterError(f"{name}, line {line}: {error}") from None

@@ -437,6 +437,13 @@ def test_piece_of_a_course_that_is_none_is_refused_in_one_line(pieces: str, mess
     assert str(error.value).isprintable()
 
 
+@pytest.mark.parametrize("field", ["controller.balanced.planer.dcm_gain", "controller.balanced.planner.dcm_gan"])
+def test_an_error_of_an_override_is_not_located_in_the_file(field: str) -> None:
+    text = "controller:\n  balanced:\n    planner: {}"
+    with pytest.raises(ParameterError, match=r"^controller\.balanced\.plan.*: no such field; .*; did you mean "):
+        parse_scenario(text, {field: "1"})
+
+
 def test_override_reaches_into_a_piece_of_a_course() -> None:
     text = "terrain: {course: {pieces: [flat, {slope: {length: 4}}]}}"
     name = "terrain.course.pieces"
