@@ -126,6 +126,8 @@ class Rows(Design):
         if not self.file:
             raise ParameterError("design.rows.file: empty; allowed: the path of a CSV file; write it")
         header, rows = _read_rows(Path(self.file), where)
+        if not rows:
+            raise ParameterError(f"{where}: 0 points below the header; allowed: one row or more; add rows")
         _require_number(len(rows), len(header))
         points = [
             {

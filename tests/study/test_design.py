@@ -114,6 +114,7 @@ def test_rows_are_those_of_the_file(tmp_path: Path) -> None:
         ("a,a\n1,2\n", "a name twice"),
         ("a,b\n1\n", "row 1 has 1 values"),
         ("a\n", "0 points"),
+        ("a\n\n", "points.csv: 0 points below the header; allowed: one row or more; add rows"),
         (",b\n1,2\n", "the header is empty"),
         ('a\n"1', "not CSV"),
         ("a\n" + "1\n" * (MAX_POINTS + 1) + '"not read', f"more than {MAX_POINTS} rows"),
