@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from humanwalk.files import read_regular
 from humanwalk.numerics import Array
@@ -109,9 +109,8 @@ def read_heights(path: Path, black: float, white: float) -> Array:
 
 def _require_size(rows: int, columns: int, name: str) -> None:
     if not (1 <= rows <= MAX_SIDE and 1 <= columns <= MAX_SIDE):
-        raise ParameterError(
-            f"{name}: {rows} rows of {columns} heights; allowed: 1 to {MAX_SIDE} of each; give a smaller map"
-        )
+        fix = "give a smaller map" if rows else "write heights"
+        raise ParameterError(f"{name}: {rows} rows of {columns} heights; allowed: 1 to {MAX_SIDE} of each; {fix}")
 
 
 def _csv(content: bytes, name: str) -> Array:
@@ -175,6 +174,9 @@ def _gray(content: bytes, name: str) -> Array:
                 return np.asarray(image, dtype=float) / WHITE[image.mode]
     except ParameterError:
         raise
+    except UnidentifiedImageError:
+        # Its message has the address of an object.
+        raise ParameterError(f"{name}: not a PNG image; allowed: a gray .png; save it again") from None
     except Exception as error:
         # Pillow lets many kinds of errors out of damaged files.
         raise ParameterError(

@@ -104,6 +104,7 @@ def test_a_scenario_names_it_relative_to_its_folder(tmp_path: Path) -> None:
     ("content", "match"),
     [
         ("", "0 rows"),
+        ("\n", "0 rows of 0 heights; allowed: 1 to 5000 of each; write heights$"),
         ("1,2\n3\n", r"row 2 has 1 numbers; allowed: 2"),
         ("1,x\n", r"row 1, column 2: x is not a number"),
         ("1,1_5\n", r"row 1, column 2: 1_5 is not a number"),
@@ -165,6 +166,7 @@ def test_damaged_image_is_refused(tmp_path: Path) -> None:
 def test_jpeg_with_the_name_of_a_png_is_refused(tmp_path: Path) -> None:
     Image.fromarray(np.zeros((4, 4), np.uint8)).save(tmp_path / "map.png", "JPEG")
     refused(tmp_path / "map.png", "not a PNG image")
+    refused(tmp_path / "map.png", "map.png: not a PNG image; allowed: a gray .png; save it again$")
 
 
 @pytest.mark.parametrize("name", ["map.txt", "map", "map.csv.gz"])
