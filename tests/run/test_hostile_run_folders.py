@@ -119,6 +119,21 @@ def test_field_of_another_type_is_refused_by_its_name(folder: Path, value: Any) 
     )
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("duration: x\n", ", line 1: duration: 'x' is"),
+        ("duration: [\n", ": not YAML"),
+        ("", ": empty"),
+    ],
+)
+def test_an_error_of_the_scenario_names_the_folder_of_the_run(folder: Path, text: str, said: str) -> None:
+    """A comparison reads several."""
+    (folder / SCENARIO).write_text(text)
+    with pytest.raises(ParameterError, match=rf"^{folder / SCENARIO}{said}"):
+        assert Run.open(folder).scenario
+
+
 @pytest.mark.parametrize("field", ["signals_sha256", "versions", "seed"])
 def test_provenance_without_a_field_is_refused(folder: Path, field: str) -> None:
     summary = json.loads((folder / SUMMARY).read_text())
