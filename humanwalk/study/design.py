@@ -76,9 +76,8 @@ class LatinHypercube(Design):
     seed: int = quantity(0, "", 0, 2**32 - 1)
 
     def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        _require_factors(factors)
         _require_number(self.number, len(factors))
-        if not factors:
-            return [{}] * self.number
         return _sampled(factors, qmc.LatinHypercube(len(factors), rng=self.seed).random(self.number))
 
 
@@ -98,9 +97,8 @@ class Sobol(Design):
             )
 
     def points(self, factors: Mapping[str, Factor]) -> Sequence[Point]:
+        _require_factors(factors)
         _require_number(self.number, len(factors))
-        if not factors:
-            return [{}] * self.number
         if len(factors) > qmc.Sobol.MAXDIM:
             raise ParameterError(f"factors: {len(factors)}; allowed with design sobol: up to {qmc.Sobol.MAXDIM}")
         return _sampled(factors, qmc.Sobol(len(factors), rng=self.seed).random(self.number))
@@ -163,6 +161,12 @@ def _sampled(factors: Mapping[str, Factor], samples: Array) -> list[Point]:
     """Points from samples of the unit cube, shape (points, factors)."""
     columns = [factor.quantiles(shares) for factor, shares in zip(factors.values(), samples.T, strict=True)]
     return [dict(zip(factors, values, strict=True)) for values in zip(*columns, strict=True)]
+
+
+def _require_factors(factors: Mapping[str, Factor]) -> None:
+    """Raise ParameterError for a sample without factors: its runs would be the same."""
+    if not factors:
+        raise ParameterError("factors: empty; allowed with a design that samples: one or more; write one to sample")
 
 
 def _require_number(points: int, factors: int) -> None:

@@ -96,6 +96,12 @@ def test_distribution_has_no_place_in_a_full_factorial() -> None:
         FullFactorial().points(TWO)
 
 
+@pytest.mark.parametrize("design", [LatinHypercube(4), Sobol(4)])
+def test_a_sample_of_nothing_is_refused(design: Any) -> None:
+    with pytest.raises(ParameterError, match=r"^factors: empty; allowed with a design that samples: one or more; "):
+        design.points({})
+
+
 def test_rows_are_those_of_the_file(tmp_path: Path) -> None:
     file = tmp_path / "points.csv"
     file.write_text('duration,contact,push\n3,point,none\n2.5,,hard\n1e1,"{""point"": {}}",\n')
