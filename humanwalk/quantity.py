@@ -73,6 +73,15 @@ def number_of(text: str) -> float:
     return float(text)
 
 
+def require_kind(value: object, kind: type[Any], function: str, example: str) -> None:
+    """Raise ParameterError unless a function was called with a value of a kind; `example` makes its arguments."""
+    if not isinstance(value, kind):
+        raise ParameterError(
+            f"{function}: {printable(repr(value), 60)} is no {kind.__name__}; allowed: what "
+            f"{example.partition('(')[0]} returns; write {function}({example})"
+        )
+
+
 def quantity(default: Any, unit: str, low: float, high: float) -> Any:
     """Dataclass field for a number in [low, high], in the given unit ("" for a pure number); see `REQUIRED`."""
     return dataclasses.field(default=default, metadata={"unit": unit, "low": low, "high": high})

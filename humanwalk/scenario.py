@@ -30,7 +30,7 @@ from humanwalk.choices.start import StartParameters
 from humanwalk.notebook import html_table
 from humanwalk.parameter_file import anchor_paths, build, dump, located, read_fields
 from humanwalk.parameter_override import override
-from humanwalk.quantity import ParameterError, choice, printable, quantity, tag_of
+from humanwalk.quantity import ParameterError, choice, quantity, require_kind, tag_of
 from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.terrain import TERRAINS, Plane, Terrain
 from humanwalk.walking.push import PushParameters
@@ -146,11 +146,7 @@ class Scenario:
 
 def require_scenario(value: object, function: str) -> None:
     """Raise ParameterError unless a function was called with a Scenario."""
-    if not isinstance(value, Scenario):
-        raise ParameterError(
-            f"{function}: {printable(repr(value), 60)} is no Scenario; allowed: what load_scenario returns; "
-            f'write {function}(load_scenario("thesis"))'
-        )
+    require_kind(value, Scenario, function, 'load_scenario("thesis")')
 
 
 def shipped_scenarios() -> dict[str, Path]:
@@ -180,6 +176,8 @@ def parse_scenario(
 
     Relative paths in the text count from `folder`, those in overrides from the working directory.
     """
+    if not isinstance(overrides, Mapping | None):
+        raise ParameterError(f'overrides: {overrides!r} is no mapping; allowed: {{"duration": 3}}; name the fields')
     data = read_yaml(text, name)
     anchor_paths(Scenario, data, folder)
     for field, value in (overrides or {}).items():

@@ -1,5 +1,6 @@
 """What a user of the Python package sees: short texts of objects, errors that name the function, types."""
 
+import inspect
 import subprocess
 import sys
 from pathlib import Path
@@ -69,6 +70,9 @@ def test_a_value_that_replaces_one_is_text_or_itself() -> None:
     assert (plain.duration, plain.pushes.given[0].time) == (0.5, 0.3)
     with pytest.raises(humanwalk.ParameterError, match=r"^duration: None is not a number; allowed: 0\.001 to 3600 s"):
         humanwalk.load_scenario("walk", {"duration": None})
+    for no_mapping in ("duration=3", ["duration=3"]):
+        with pytest.raises(humanwalk.ParameterError, match=r"^overrides: .* is no mapping; allowed: {"):
+            humanwalk.load_scenario("walk", no_mapping)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("load", [humanwalk.load_scenario, humanwalk.load_study, humanwalk.load_tuning])
@@ -76,6 +80,22 @@ def test_a_value_that_replaces_one_is_text_or_itself() -> None:
 def test_what_is_no_name_is_refused_in_one_line(load: Any, argument: Any) -> None:
     with pytest.raises(humanwalk.ParameterError, match="no name; allowed: a name or the path of a file; write one"):
         load(argument)
+
+
+@pytest.mark.parametrize(
+    ("function", "call"),
+    [
+        (humanwalk.run_study, r"run_study\(load_study\("),
+        (humanwalk.tune, r"tune\(load_tuning\("),
+        (humanwalk.plot, r"plot\(Run\.open\("),
+    ],
+)
+@pytest.mark.parametrize("argument", ["walk", None, Path("walk.yaml")])
+def test_a_name_in_place_of_what_is_loaded_produces_an_error_with_the_fix(
+    function: Any, call: str, argument: Any
+) -> None:
+    with pytest.raises(humanwalk.ParameterError, match=rf"is no (Study|Tuning|Run); allowed: .*; write {call}"):
+        function(argument, *[None] * (len(inspect.signature(function).parameters) - 1))
 
 
 def test_builders_that_do_not_fit_the_controller_name_the_one_that_does(tmp_path: Path) -> None:

@@ -60,7 +60,12 @@ def local_client(workers: int | None = None, memory_limit: str | int = "auto") -
     Args:
         workers: their number; None for one per core.
         memory_limit: of each worker [bytes]; a worker above 95 % of it is killed. Default: its share of the machine's.
+
+    Raises:
+        ParameterError: no workers are asked for.
     """
+    if workers is not None and workers < 1:
+        raise ParameterError(f"workers: {workers}; allowed: 1 or more, None for one per core; write one of these")
     with _quiet(), dask.config.set(SETTINGS), ExitStack() as stack:
         with _interrupts_ignored():
             cluster = stack.enter_context(

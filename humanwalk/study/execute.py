@@ -21,7 +21,7 @@ import pyarrow as pa
 
 from humanwalk.extras import missing_package
 from humanwalk.files import require_inside
-from humanwalk.quantity import ParameterError, printable
+from humanwalk.quantity import ParameterError, printable, require_kind
 from humanwalk.study.row import Job, Row, simulate_row
 from humanwalk.study.study import Study
 from humanwalk.study.table import RUNS, Journal, open_journal, read_table
@@ -226,6 +226,7 @@ def run_study(
     Raises:
         ParameterError: a point or the folder cannot be used, or the scheduler is gone; finished rows are kept.
     """
+    require_kind(study, Study, "run_study", 'load_study("balance_pushes"), ...')
     folder = Path(folder)
     study.require_valid()
     with open_journal(folder, study) as journal:

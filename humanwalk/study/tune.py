@@ -10,7 +10,7 @@ from pathlib import Path
 
 from distributed import Client
 
-from humanwalk.quantity import ParameterError, printable
+from humanwalk.quantity import ParameterError, printable, require_kind
 from humanwalk.study.execute import never, run_jobs
 from humanwalk.study.objectives import Score
 from humanwalk.study.row import Row
@@ -26,7 +26,7 @@ between machines."""
 
 def tune(
     tuning: Tuning,
-    folder: Path,
+    folder: Path | str,
     client: Client,
     on_trial: Callable[[Mapping[int, Row]], None] = lambda rows: None,
     should_stop: Callable[[], bool] = never,
@@ -46,8 +46,9 @@ def tune(
         ParameterError: the tuning or the folder cannot be used, the scenario itself fails, or the scheduler is gone;
             finished trials are kept.
     """
+    require_kind(tuning, Tuning, "tune", 'load_tuning("cost_of_transport"), ...')
     starts = start_values(tuning)
-    with open_table(folder, tuning) as table:
+    with open_table(Path(folder), tuning) as table:
         on_trial(table.rows)
 
         def add(trial: Trial, returned: Row) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
-from humanwalk.study.cluster import slurm_client
+from humanwalk.study.cluster import local_client, slurm_client
 from humanwalk.study.execute import run_jobs
 from humanwalk.study.row import Job, Row
 
@@ -58,3 +58,10 @@ def test_slurm_files_that_cannot_be_used_are_refused_in_one_line(tmp_path: Path,
     with pytest.raises(ParameterError, match=match) as raised, slurm_client(file):
         pass
     assert str(raised.value).isprintable()
+
+
+@pytest.mark.parametrize("workers", [0, -1])
+def test_no_workers_are_refused(workers: int) -> None:
+    refusal = rf"^workers: {workers}; allowed: 1 or more, None for one per core; "
+    with pytest.raises(ParameterError, match=refusal), local_client(workers):
+        pass

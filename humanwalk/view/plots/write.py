@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from humanwalk.files import make_folder, require_replaceable
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, require_kind
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import require_format, save
 from humanwalk.view.plots.gait_cycle import (
@@ -45,6 +45,7 @@ def plot(run: Run, name: str) -> Figure:
     Raises:
         ParameterError: no such plot, a run that has nothing to draw for it, or a run without physics.
     """
+    require_kind(run, Run, "plot", 'Run.open("runs/thesis"), ...')
     run.require_physics()
     figure = PLOTS[name](run) if name in PLOTS else None
     if figure is None:
