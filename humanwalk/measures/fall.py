@@ -1,11 +1,11 @@
-"""When, where and why a walker fell, from the record alone.
+"""When, where and why a walker fell, from the record and what pushed it.
 
 The likely cause is the first of the events below in the last seconds before the body goes down: what comes later, as
 feet that slide under a falling body, is usually a consequence.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypedDict
 
@@ -18,6 +18,7 @@ from humanwalk.measures.orientation import pelvis_rotation
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
+from humanwalk.walking.push import Push
 from humanwalk.walking.walking_reference import Phase
 
 WINDOW = 4.0
@@ -76,15 +77,16 @@ class Event:
     text: str
 
 
-def report_fall(signals: pa.Table, mass: float) -> FallReport:
+def report_fall(signals: pa.Table, mass: float, pushes: Sequence[Push] | None = None) -> FallReport:
     """When, where and likely why a record ends with a fall.
 
     Args:
         signals: The record.
         mass: Body mass [kg].
+        pushes: What pushed the walker; None for what the samples show, which may miss or overrate a short push.
     """
     time, x, y = (float(signals[name][-1].as_py()) for name in (TIME, "pelvis.x_m", "pelvis.y_m"))
-    events = events_before_fall(signals, mass)
+    events = events_before_fall(signals, mass, pushes)
     nothing = f"unknown; no {', '.join(CAUSES)} in the {WINDOW:g} s before"
     why = "; then ".join(event.text for event in events) or nothing
     cause = events[0].cause if events else UNKNOWN
@@ -97,11 +99,13 @@ def report_fall(signals: pa.Table, mass: float) -> FallReport:
     }
 
 
-def events_before_fall(signals: pa.Table, mass: float) -> list[Event]:
-    """The first event of every cause before the body goes down, in the order of their times."""
+def events_before_fall(signals: pa.Table, mass: float, pushes: Sequence[Push] | None = None) -> list[Event]:
+    """The first event of every cause before the body goes down, in the order of their times; see `report_fall`."""
     before = signals.filter(pa.array(_before_going_down(signals)))
     recorded = set(signals.column_names)
     found = {cause: detect(before, mass) for cause, (needed, detect) in CAUSES.items() if recorded.issuperset(needed)}
+    if pushes is not None:
+        found["push"] = _strongest(_delivered(pushes, before[TIME].to_numpy()), before, mass)
     events = [Event(at[0], cause, at[1]) for cause, at in found.items() if at is not None]
     return sorted(events, key=lambda event: event.time)
 
@@ -122,20 +126,30 @@ _Found = tuple[float, str] | None
 
 
 def strongest_push(signals: pa.Table, mass: float) -> _Found:
-    """The push with the greatest impulse."""
+    """The push with the greatest impulse in the samples."""
     time = signals[TIME].to_numpy()
     force = matrix(signals, [f"push.force_{axis}_N" for axis in "xy"])
     steps = np.gradient(time) if time.size > 1 else np.zeros_like(time)
     impulses = force * steps[:, None]
-    episodes = [(first, impulses[first:end].sum(axis=0)) for first, end in stretches(force.any(axis=1))]
-    if not episodes:
-        return None
-    first, impulse = max(episodes, key=lambda episode: float(np.linalg.norm(episode[1])))
+    episodes = [(float(time[first]), impulses[first:end].sum(axis=0)) for first, end in stretches(force.any(axis=1))]
+    return _strongest(episodes, signals, mass)
+
+
+def _delivered(pushes: Sequence[Push], time: Array) -> list[tuple[float, Array]]:
+    """When pushes began [s], and their horizontal impulses between the first and the last of the times [N s]."""
+    shares = [(push, min(push.time + push.duration, time[-1]) - max(push.time, time[0])) for push in pushes]
+    return [(push.time, np.array(push.force[:2]) * share) for push, share in shares if share > 0.0]
+
+
+def _strongest(impulses: Sequence[tuple[float, Array]], signals: pa.Table, mass: float) -> _Found:
+    """The greatest of some impulses with their times, if it counts."""
+    began, impulse = max(impulses, key=lambda at: float(np.linalg.norm(at[1])), default=(0.0, np.zeros(2)))
     size = float(np.linalg.norm(impulse))
     if size < MIN_PUSHED_SPEED * mass:
         return None
-    side = _side(-impulse, _heading(signals, first))
-    return float(time[first]), f"pushed with about {size:.0f} N s from {side} at {time[first]:.2f} s"
+    row = int(np.searchsorted(signals[TIME].to_numpy(), began))
+    side = _side(-impulse, _heading(signals, row))
+    return began, f"pushed with about {size:.0f} N s from {side} at {began:.2f} s"
 
 
 def first_slip(signals: pa.Table, mass: float) -> _Found:

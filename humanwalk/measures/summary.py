@@ -19,6 +19,7 @@ from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import printable
 from humanwalk.scenario import Scenario
+from humanwalk.walking.push import all_pushes
 
 PACKAGES = ("humanwalk", "drake", "numpy")
 """Packages whose versions a summary names."""
@@ -91,6 +92,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
     )
     cost = cost_of_transport(signals, steady, scenario.subject.mass, distance_along(signals, steady, directions.travel))
     supported = forces[0] in signals.column_names
+    pushes = all_pushes(scenario.pushes, scenario.seed)
     summary: Summary = {
         "scenario": printable(name),
         "description": printable(scenario.description, 1000),
@@ -98,7 +100,7 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "end": end,
         "physics": physics,
         "duration_s": float(time[-1]),
-        "fall": report_fall(signals, scenario.subject.mass) if end == FELL else None,
+        "fall": report_fall(signals, scenario.subject.mass, pushes) if end == FELL else None,
         "steady_from_s": steady_from,
         "distance_m": distance_along(signals, every, directions.travel),
         "mean_speed_m_s": _rate(time[steady], distance_along(signals, steady, directions.facing)),

@@ -19,6 +19,7 @@ from humanwalk.run.pace import Pace
 from humanwalk.run.simulate import Prepared, prepare, simulate_prepared
 from humanwalk.scenario import Scenario
 from humanwalk.view.drive_page import DrivePage, Hand
+from humanwalk.walking.push import all_pushes
 
 IDLE_PERIOD = 0.03
 """Wall-clock time between two readings of the page while time stands still [s]."""
@@ -162,12 +163,13 @@ class Driver:
         by_hand = outcome.end == INTERRUPTED
         # A hand ends a walk as its duration does.
         end = COMPLETED if by_hand else outcome.end
-        mass = outcome.scenario.subject.mass
-        reason = report_fall(outcome.signals, mass)["description"] if end == FELL else end
+        scenario = self.driven.recorded()
+        pushes = all_pushes(scenario.pushes, scenario.seed)
+        reason = report_fall(outcome.signals, scenario.subject.mass, pushes)["description"] if end == FELL else end
         self._page.show(self.driven.time, 0.0, 0.0, f"{reason}; reset with R", ended=True)
         ended = Ended.WALK if not by_hand else Ended.RESET if self.reset else Ended.INTERRUPT
         record = self.record and self.driven.time > MIN_DURATION
-        return Drive(replace(outcome, scenario=self.driven.recorded(), end=end), ended, record)
+        return Drive(replace(outcome, scenario=scenario, end=end), ended, record)
 
     def _act(self, simulated: float) -> Hand:
         hand, driven = self._page.read(), self.driven

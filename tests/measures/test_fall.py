@@ -1,5 +1,6 @@
 """When, where and why a walker fell, on constructed records and on a real fall."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from humanwalk.measures.signals import TIME
 from humanwalk.numerics import Array
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario
+from humanwalk.walking.push import Push
 from humanwalk.walking.walking_reference import Phase
 
 MASS = 70.0
@@ -155,6 +157,21 @@ def test_the_strongest_push_is_named() -> None:
     assert "pushed with about 90 N s from behind at 8.00 s" in report_fall(signals, MASS)["description"]
 
 
+@given(begin=st.floats(6.0, 9.0), duration=st.floats(0.001, 0.5))
+def test_a_push_that_is_known_has_its_own_impulse_however_short(begin: float, duration: float) -> None:
+    push = Push(time=begin, duration=duration, impulse=30.0, direction=0.0)
+    said = f"pushed with about 30 N s from behind at {begin:.2f} s"
+    assert said in report_fall(fallen(), MASS, (push, replace(push, time=begin - 0.5, impulse=20.0)))["description"]
+
+
+def test_a_push_that_is_known_counts_as_far_as_it_acted_before_the_body_went_down() -> None:
+    # The pelvis is at GOING_DOWN of its height 0.11 s after DOWN.
+    long = Push(time=DOWN - 0.89, duration=10.0, impulse=1000.0, direction=0.5 * np.pi)
+    assert "pushed with about 100 N s from the right" in report_fall(fallen(), MASS, (long,))["description"]
+    away = (Push(time=DOWN + 0.2), Push(time=DOWN - WINDOW - 1.0), Push(time=8.0, impulse=5.0))
+    assert report_fall(fallen(**EVENTS["push"]), MASS, away)["cause"] == UNKNOWN
+
+
 def test_a_walker_without_planner_has_no_events_of_it() -> None:
     signals = fallen(**EVENTS["push"])
     own = [name for name in signals.column_names if not name.startswith(("dcm", "planner", "qp"))]
@@ -172,3 +189,11 @@ def test_a_real_walker_that_is_knocked_over() -> None:
     assert fall["time_s"] == pytest.approx(outcome.signals[TIME][-1].as_py())
     # The push is to the right.
     assert fall["y_m"] < -0.2
+
+
+@pytest.mark.parametrize("time", [0.2, 0.203])
+def test_a_push_shorter_than_a_sampling_period_is_the_cause_with_its_impulse(time: float) -> None:
+    push = f"[{{time: {time}, impulse: 200, direction: -1.5708, duration: 0.002}}]"
+    fall = simulate(load_scenario("stand", {"pushes.given": push, "duration": "3"})).summary()["fall"]
+    assert fall is not None
+    assert "likely cause: pushed with about 200 N s from the left at 0.20 s; " in fall["description"]
