@@ -258,7 +258,7 @@ def _build_choice(choices: Mapping[str, type[Any]], value: Any, place: _Place) -
     if not isinstance(tag, str) or tag not in choices:
         raise ParameterError(
             f"{place}: {shown(tag)} is unknown; allowed: {', '.join(choices)}, alone or with fields"
-            f"{did_you_mean(shown(tag), tuple(choices))}"
+            f"{_lists_with(tag, place) or did_you_mean(shown(tag), tuple(choices))}"
         )
     chosen: Any = choices[tag]
     only = only_field(chosen)
@@ -274,6 +274,13 @@ def _hint(name: str, fields: Mapping[str, Any], place: _Place) -> str:
     """Where an unknown field belongs; if only to entries, also the field that may be meant."""
     of_entries = fields_of(place.root, entries=True)
     return _homes(name, fields_of(place.root)) or _homes(name, of_entries) + did_you_mean(name, tuple(fields))
+
+
+def _lists_with(tag: Any, place: _Place) -> str:
+    """The lists of choices that have a tag; nothing if there are none: stairs are a piece of a course."""
+    fields = fields_of(place.root, entries=True)
+    lists = [path for path, field in fields if isinstance(tag, str) and tag in field.metadata.get("choice_list", {})]
+    return f"; it belongs to the list {' or '.join(lists)}" if lists else ""
 
 
 def _homes(name: str, fields: Iterable[tuple[str, dataclasses.Field[Any]]]) -> str:

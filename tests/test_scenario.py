@@ -444,6 +444,20 @@ def test_an_error_of_an_override_is_not_located_in_the_file(field: str) -> None:
         parse_scenario(text, {field: "1"})
 
 
+@pytest.mark.parametrize(
+    ("text", "home"),
+    [
+        ("terrain: stairs", "terrain.course.pieces"),
+        ("terrain: {stairs: {rise: 0.17}}", "terrain.course.pieces"),
+        ("subject: {loads: [hip_exoskeleton]}", "subject.devices"),
+        ("subject: {devices: [{stiff_knee: {}}]}", "subject.impairments"),
+    ],
+)
+def test_a_choice_of_another_list_is_sent_there(text: str, home: str) -> None:
+    with pytest.raises(ParameterError, match=rf" is unknown; allowed: .*; it belongs to the list {home}$"):
+        parse_scenario(text)
+
+
 def test_override_reaches_into_a_piece_of_a_course() -> None:
     text = "terrain: {course: {pieces: [flat, {slope: {length: 4}}]}}"
     name = "terrain.course.pieces"
