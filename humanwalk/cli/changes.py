@@ -4,8 +4,9 @@ import dataclasses
 import functools
 import inspect
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
@@ -106,15 +107,18 @@ class Changes:
             base: Other overrides by field name.
 
         Raises:
-            ParameterError: a text that cannot be read, or a scenario whose speed cannot be set.
+            ParameterError: a text that cannot be read, a field of --set that a shorthand replaces, or a scenario whose
+                speed cannot be set.
         """
         from humanwalk.cli.shorthands import push_overrides, terrain_overrides
 
-        overrides = {**(base or {}), **overrides_of(self.set_), **self._of_subject()}
+        given, shorthands = overrides_of(self.set_), self._of_subject()
         if self.terrain is not None:
-            overrides |= terrain_overrides(self.terrain)
+            shorthands |= terrain_overrides(self.terrain)
         if self.push:
-            overrides |= push_overrides(self.push)
+            shorthands |= push_overrides(self.push)
+        require_kept(given, shorthands)
+        overrides = {**(base or {}), **given, **shorthands}
         if self.speed is not None:
             overrides |= speed_overrides(self.speed, scenario, overrides)
         if self.shorthands and "description" not in overrides:
@@ -179,6 +183,15 @@ def overrides_of(pairs: list[str]) -> dict[str, str]:
             raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
         overrides[key] = value
     return overrides
+
+
+def require_kept(given: Iterable[str], shorthands: Iterable[str]) -> None:
+    """Raise ParameterError for a field of --set that is, or is in, a field that a shorthand replaces."""
+    for field, replaced in product(given, shorthands):
+        if f"{field}.".startswith(f"{replaced}."):
+            raise ParameterError(
+                f"--set {field}: another option replaces {replaced}; allowed: one of the two; leave one out"
+            )
 
 
 def described(scenario: str, shorthands: list[str]) -> str:

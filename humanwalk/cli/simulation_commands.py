@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.changes import Changes, takes_changes
+from humanwalk.cli.changes import Changes, overrides_of, require_kept, takes_changes
 from humanwalk.cli.common import (
     DIFFERS,
     FELL,
@@ -76,14 +76,14 @@ def walk(
             f"--follow {printable(follow)}: --set controller replaces what follows the recording; allowed: one of the "
             "two; leave one out"
         )
-    if duration is not None:
-        overrides["duration"] = repr(duration)
+    options = {} if duration is None else {"duration": repr(duration)}
     if look is not None:
         require_look(look)
-        overrides["subject.look"] = look
+        options["subject.look"] = look
+    require_kept(overrides_of(changes.set_), options)
     run = walk_and_write(
         scenario,
-        overrides,
+        overrides | options,
         output,
         name=None if follow is None else file_name(follow),
         live=meshcat,

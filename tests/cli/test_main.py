@@ -280,6 +280,8 @@ def test_shown_commands_call_the_program_as_it_was_called(
         (("--set", "=3"), "FIELD=VALUE"),
         (("--set", "duration=[1"), "not YAML"),
         (("--duration", "-1"), "duration"),
+        (("--duration", "1", "--set", "duration=2"), "--set duration: another option replaces duration; allowed: one"),
+        (("--look", "bones", "--set", "subject.look=person"), "--set subject.look: another option replaces"),
         (("--duration", "nan"), "write a number"),
         (("--set", "controller.thesis.gait.path.offset=0.03"), "shorten the step"),
         (("--set", "controller.thesis.gait.path.toe_drop=0"), "Ankle"),

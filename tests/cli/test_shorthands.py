@@ -37,6 +37,26 @@ def changed(scenario: str = "walk", **changes: Any) -> Scenario:
 # --push
 
 
+@pytest.mark.parametrize(
+    ("field", "changes"),
+    [
+        ("terrain.plane.friction_coefficient=0.3", {"terrain": "slope 3 deg"}),
+        ("pushes.given.0.body=Head", {"push": ["30 N s at 2 s from behind"]}),
+        ("subject.mass=80", {"mass": 70.0}),
+    ],
+)
+def test_a_field_that_a_shorthand_replaces_is_not_set(field: str, changes: dict[str, Any]) -> None:
+    with pytest.raises(
+        ParameterError, match=rf"^--set {field.partition('=')[0]}: another option replaces .*; leave one"
+    ):
+        changed(set_=[field], **changes)
+
+
+def test_a_shorthand_may_replace_a_part_of_what_is_set() -> None:
+    subject = changed(set_=["subject={mass: 80, stature: 1.9}", "pushes.random_interval=0"], mass=70.0).subject
+    assert (subject.mass, subject.stature) == (70.0, 1.9)
+
+
 def test_a_push_is_read_from_its_words() -> None:
     assert push_of("60 N s at 8 s from behind") == Push(time=8.0, impulse=60.0, direction=0.0)
     everything = push_of("3.5e1 N s at 2 s from the left for 0.3 s on the Head")
