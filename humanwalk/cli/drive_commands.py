@@ -39,7 +39,7 @@ def drive(
     """
     from humanwalk.cli.drive import drive_and_write
 
-    overrides = changes.overrides(scenario) | {"duration": repr(duration)}
+    overrides = {"duration": repr(duration)} | changes.overrides(scenario)
     drive_and_write(
         scenario,
         overrides,

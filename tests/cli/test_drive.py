@@ -13,8 +13,10 @@ from rich.console import Console
 
 from humanwalk.cli import drive as module
 from humanwalk.cli.drive import drive_and_write
+from humanwalk.cli.drive_commands import DURATION
 from humanwalk.quantity import ParameterError
 from humanwalk.run.reproduce import reproduce
+from humanwalk.scenario import load_scenario
 from humanwalk.view.drive import wait_for_reset
 from humanwalk.view.drive_page import DrivePage, Hand
 
@@ -121,3 +123,17 @@ def test_a_folder_that_holds_files_is_refused_before_there_is_a_page(
     assert code == 2
     (line,) = errors.splitlines()
     assert line.startswith("humanwalk: -o mine: holds files already; allowed: a new or empty folder")
+
+
+@pytest.mark.parametrize("options", [("--set", "duration=7"), ("--duration", "7"), ()])
+def test_the_longest_walk_is_that_of_the_options(
+    humanwalk: Any, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...]
+) -> None:
+    durations: list[float] = []
+    monkeypatch.setattr(
+        module,
+        "drive_and_write",
+        lambda scenario, overrides, *others, **more: durations.append(load_scenario(scenario, overrides).duration),
+    )
+    assert humanwalk("drive", *options)[0] == 0
+    assert durations == [7.0 if options else DURATION]
