@@ -205,16 +205,15 @@ def _entries(value: Any, place: _Place, allowed: str) -> list[tuple[Any, _Place]
 def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, default: Any = None) -> Any:
     """What `make` returns for the fields of a dataclass that a mapping has; see `_build` for `default`."""
     fields = {field.name: field for field in dataclasses.fields(kind)}
+    allowed = f"allowed: {', '.join(fields) or 'none, it has no fields'}"
     if not isinstance(value, dict):
-        raise ParameterError(f"{place}: {shown(value)} is not a group of fields; allowed: {', '.join(fields)}")
+        raise ParameterError(f"{place}: {shown(value)} is not a group of fields; {allowed}")
     hints = _hints(kind)
     arguments: dict[str, Any] = {}
     for key, entry in value.items():
         name = key if isinstance(key, str) and key.isprintable() else shown(key)
         if key not in fields:
-            raise ParameterError(
-                f"{place / name}: no such field; allowed: {', '.join(fields)}{_hint(name, fields, place)}"
-            )
+            raise ParameterError(f"{place / name}: no such field; {allowed}{_hint(name, fields, place)}")
         inherited = fields[key].default if default is None else getattr(default, key)
         arguments[key] = _build_field(fields[key], hints[key], entry, place / name, inherited)
     needed = required_fields(kind) if make is kind else []
@@ -228,6 +227,7 @@ def _made(make: Callable[..., Any], kind: Any, value: Any, place: _Place, defaul
         raise ParameterError(f"{place / str(error)}") from None
 
 
+@functools.cache
 def required_fields(kind: Any) -> list[str]:
     """Names of the fields of a dataclass that have no default."""
     return [of.name for of in dataclasses.fields(kind) if of.default is of.default_factory is dataclasses.MISSING]

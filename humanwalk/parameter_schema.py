@@ -43,7 +43,7 @@ def json_schema(kind: type[Any], title: str, also: Also | None = None) -> Schema
     return {"$schema": DIALECT, "title": title, "$ref": f"#/$defs/{root}", "$defs": definitions}
 
 
-def _define(kind: type[Any], definitions: dict[str, Schema], also: Also) -> str:
+def _define(kind: Any, definitions: dict[str, Schema], also: Also) -> str:
     """Add the definition of a dataclass, and return its name."""
     name = f"{kind.__module__.removeprefix('humanwalk.')}.{kind.__qualname__}"
     if name not in definitions:

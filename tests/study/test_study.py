@@ -107,6 +107,11 @@ def test_column_shows_the_scenarios_value_where_a_point_has_none() -> None:
             "factors: {duration: {normal: {mean: 5}}}",
             "normal: standard_deviation missing; allowed: a group with mean ",
         ),
+        ("design: {full_factorial: 3}", r"3 is not a group of fields; allowed: none, it has no fields$"),
+        (
+            "design: {full_factorial: {number: 3}}",
+            "no such field; allowed: none, it has no fields; it belongs to design",
+        ),
         ("design: sobl", "did you mean sobol"),
         ("keep: everything", "keep: 'everything' is unknown; allowed: summary, runs"),
         ("scenario: tesis", "did you mean thesis"),
