@@ -7,7 +7,7 @@ feet that slide under a falling body, is usually a consequence.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import pyarrow as pa
@@ -77,13 +77,27 @@ class Event:
     text: str
 
 
-def report_fall(signals: pa.Table, mass: float, pushes: Sequence[Push] | None = None) -> FallReport:
+class Before(NamedTuple):
+    """What is known of the time before the body goes down.
+
+    Attributes:
+        signals: The record of that time.
+        mass: Body mass [kg].
+        pushes: What pushed the walker, at any time.
+    """
+
+    signals: pa.Table
+    mass: float
+    pushes: Sequence[Push]
+
+
+def report_fall(signals: pa.Table, mass: float, pushes: Sequence[Push]) -> FallReport:
     """When, where and likely why a record ends with a fall.
 
     Args:
         signals: The record.
         mass: Body mass [kg].
-        pushes: What pushed the walker; None for what the samples show, which may miss or overrate a short push.
+        pushes: What pushed the walker; samples of its force would miss or overrate a short push.
     """
     time, x, y = (float(signals[name][-1].as_py()) for name in (TIME, "pelvis.x_m", "pelvis.y_m"))
     events = events_before_fall(signals, mass, pushes)
@@ -99,13 +113,11 @@ def report_fall(signals: pa.Table, mass: float, pushes: Sequence[Push] | None = 
     }
 
 
-def events_before_fall(signals: pa.Table, mass: float, pushes: Sequence[Push] | None = None) -> list[Event]:
+def events_before_fall(signals: pa.Table, mass: float, pushes: Sequence[Push]) -> list[Event]:
     """The first event of every cause before the body goes down, in the order of their times; see `report_fall`."""
-    before = signals.filter(pa.array(_before_going_down(signals)))
+    before = Before(signals.filter(pa.array(_before_going_down(signals))), mass, pushes)
     recorded = set(signals.column_names)
-    found = {cause: detect(before, mass) for cause, (needed, detect) in CAUSES.items() if recorded.issuperset(needed)}
-    if pushes is not None:
-        found["push"] = _strongest(_delivered(pushes, before[TIME].to_numpy()), before, mass)
+    found = {cause: detect(before) for cause, (needed, detect) in CAUSES.items() if recorded.issuperset(needed)}
     events = [Event(at[0], cause, at[1]) for cause, at in found.items() if at is not None]
     return sorted(events, key=lambda event: event.time)
 
@@ -125,36 +137,23 @@ _Found = tuple[float, str] | None
 """Time of an event [s] and one line about it."""
 
 
-def strongest_push(signals: pa.Table, mass: float) -> _Found:
-    """The push with the greatest impulse in the samples."""
-    time = signals[TIME].to_numpy()
-    force = matrix(signals, [f"push.force_{axis}_N" for axis in "xy"])
-    steps = np.gradient(time) if time.size > 1 else np.zeros_like(time)
-    impulses = force * steps[:, None]
-    episodes = [(float(time[first]), impulses[first:end].sum(axis=0)) for first, end in stretches(force.any(axis=1))]
-    return _strongest(episodes, signals, mass)
-
-
-def _delivered(pushes: Sequence[Push], time: Array) -> list[tuple[float, Array]]:
-    """When pushes began [s], and their horizontal impulses between the first and the last of the times [N s]."""
-    shares = [(push, min(push.time + push.duration, time[-1]) - max(push.time, time[0])) for push in pushes]
-    return [(push.time, np.array(push.force[:2]) * share) for push, share in shares if share > 0.0]
-
-
-def _strongest(impulses: Sequence[tuple[float, Array]], signals: pa.Table, mass: float) -> _Found:
-    """The greatest of some impulses with their times, if it counts."""
+def strongest_push(before: Before) -> _Found:
+    """The push with the greatest impulse before the body goes down."""
+    time = before.signals[TIME].to_numpy()
+    acted = [(push, min(push.time + push.duration, time[-1]) - max(push.time, time[0])) for push in before.pushes]
+    impulses = [(push.time, np.array(push.force[:2]) * duration) for push, duration in acted if duration > 0.0]
     began, impulse = max(impulses, key=lambda at: float(np.linalg.norm(at[1])), default=(0.0, np.zeros(2)))
     size = float(np.linalg.norm(impulse))
-    if size < MIN_PUSHED_SPEED * mass:
+    if size < MIN_PUSHED_SPEED * before.mass:
         return None
-    row = int(np.searchsorted(signals[TIME].to_numpy(), began))
-    side = _side(-impulse, _heading(signals, row))
+    side = _side(-impulse, _heading(before.signals, int(np.searchsorted(time, began))))
     return began, f"pushed with about {size:.0f} N s from {side} at {began:.2f} s"
 
 
-def first_slip(signals: pa.Table, mass: float) -> _Found:
+def first_slip(before: Before) -> _Found:
     """The first time that a loaded foot slides by `MIN_SLIP`."""
-    time, found = signals[TIME].to_numpy(), []
+    signals, found = before.signals, []
+    time = signals[TIME].to_numpy()
     for side in (side.lower() for side in SIDES):
         sole = matrix(signals, [f"{side}_sole.{axis}_m" for axis in "xy"])
         loaded = signals[f"{side}_foot.force_z_N"].to_numpy() > CONTACT_ON_N
@@ -166,46 +165,43 @@ def first_slip(signals: pa.Table, mass: float) -> _Found:
     return min(found, default=None)
 
 
-def first_touch_of_legs(signals: pa.Table, mass: float) -> _Found:
+def first_touch_of_legs(before: Before) -> _Found:
     """The first time that the legs hit each other with `MIN_LEG_FORCE`."""
-    time, force = signals[TIME].to_numpy(), signals["leg_contact.force_N"].to_numpy()
-    rows = np.flatnonzero(force > MIN_LEG_FORCE * mass * GRAVITY)
+    time, force = (before.signals[name].to_numpy() for name in (TIME, "leg_contact.force_N"))
+    rows = np.flatnonzero(force > MIN_LEG_FORCE * before.mass * GRAVITY)
     return (float(time[rows[0]]), f"the legs hit each other at {time[rows[0]]:.2f} s") if rows.size else None
 
 
-def first_step_out_of_reach(signals: pa.Table, mass: float) -> _Found:
+def first_step_out_of_reach(before: Before) -> _Found:
     """The first touchdown that leaves the DCM farther than `MAX_DCM_ERROR` from its reference."""
     text = "the foot that landed at {time:.2f} s left the capture point (DCM) {error:.2f} m off its reference"
-    return _far_dcm(signals, _touchdowns, text)
+    return _far_dcm(before.signals, _touchdowns, text)
 
 
-def balance_lost_standing(signals: pa.Table, mass: float) -> _Found:
+def balance_lost_standing(before: Before) -> _Found:
     """The first time in standing with a DCM farther than `MAX_DCM_ERROR` from its reference."""
     text = "in standing, the capture point (DCM) is {error:.2f} m off its reference at {time:.2f} s"
-    return _far_dcm(signals, _standing, text)
+    return _far_dcm(before.signals, _standing, text)
 
 
-def first_qp_failures(signals: pa.Table, mass: float) -> _Found:
+def first_qp_failures(before: Before) -> _Found:
     """The first `FAILURES_IN_A_ROW` of the whole-body program."""
-    time, in_a_row = signals[TIME].to_numpy(), signals["qp.failures_in_a_row"].to_numpy()
+    time, in_a_row = (before.signals[name].to_numpy() for name in (TIME, "qp.failures_in_a_row"))
     rows = np.flatnonzero(in_a_row >= FAILURES_IN_A_ROW)
     return (float(time[rows[0]]), f"QP failures from {time[rows[0]]:.2f} s on") if rows.size else None
 
 
 _DCM = (*(f"{point}.{axis}_m" for point in ("dcm", "dcm_reference") for axis in "xy"), "planner.phase")
 
-CAUSES: dict[str, tuple[tuple[str, ...], Callable[[pa.Table, float], _Found]]] = {
-    "push": (("push.force_x_N", "push.force_y_N"), strongest_push),
+CAUSES: dict[str, tuple[tuple[str, ...], Callable[[Before], _Found]]] = {
+    "push": ((), strongest_push),
     "slip": (("right_foot.friction_use", "left_foot.friction_use"), first_slip),
     "legs that hit each other": (("leg_contact.force_N",), first_touch_of_legs),
     "foothold out of reach": (_DCM, first_step_out_of_reach),
     "balance lost in standing": (_DCM, balance_lost_standing),
     "QP failure": (("qp.failures_in_a_row",), first_qp_failures),
 }
-"""By cause: signals that not every record has, and a function of the record before the fall and of the body mass [kg].
-
-It returns the event, or None.
-"""
+"""By cause: signals that not every record has, and a function that returns the event, or None."""
 
 
 def _far_dcm(signals: pa.Table, rows_of: Callable[[Array], Mask], text: str) -> _Found:
