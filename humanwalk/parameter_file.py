@@ -14,7 +14,16 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from humanwalk.files import read_text
-from humanwalk.quantity import ParameterError, check, did_you_mean, only_field, printable, range_text, tag_of
+from humanwalk.quantity import (
+    ParameterError,
+    check,
+    did_you_mean,
+    is_within,
+    only_field,
+    printable,
+    range_text,
+    tag_of,
+)
 from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
 
 MAX_FILE_SIZE = 100_000
@@ -37,7 +46,7 @@ def located(text: str, name: str, replaced: Collection[str] = ()) -> Iterator[No
         yield
     except ParameterError as error:
         field = str(error).partition(":")[0]
-        is_other = any(f"{field}.".startswith(f"{other}.") or other.startswith(f"{field}.") for other in replaced)
+        is_other = any(is_within(field, other) or is_within(other, field) for other in replaced)
         line = None if is_other else line_of(text, field)
         if line is None:
             raise

@@ -167,6 +167,11 @@ def did_you_mean(text: str, choices: Sequence[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
+def is_within(field: str, group: str) -> bool:
+    """Whether a dotted name is that of a group or of a field in it."""
+    return f"{field}.".startswith(f"{group}.")
+
+
 def near_names(text: str, choices: Sequence[str]) -> str:
     """End of an error message: up to three choices that have the text in them, else similar ones, else nothing."""
     containing = [choice for choice in choices if text and text in choice]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
-from humanwalk.quantity import ParameterError
+from humanwalk.quantity import ParameterError, is_within
 
 if TYPE_CHECKING:
     from humanwalk.body.subject import Subject
@@ -188,7 +188,7 @@ def overrides_of(pairs: list[str]) -> dict[str, str]:
 def require_kept(given: Iterable[str], shorthands: Iterable[str]) -> None:
     """Raise ParameterError for a field of --set that is, or is in, a field that a shorthand replaces."""
     for field, replaced in product(given, shorthands):
-        if f"{field}.".startswith(f"{replaced}."):
+        if is_within(field, replaced):
             raise ParameterError(
                 f"--set {field}: another option replaces {replaced}; allowed: one of the two; leave one out"
             )
