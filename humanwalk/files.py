@@ -107,7 +107,7 @@ def require_new(path: Path, overwrite: bool) -> None:
 
 
 def require_replaceable(path: Path) -> None:
-    """Raise ParameterError, before the work that fills it, for a file of our own name that cannot be written."""
+    """Raise ParameterError, before the work that fills it, if a file whose name humanwalk chooses cannot be written."""
     _is_there(path, "", "move it away", OUR_FOLDER)
 
 

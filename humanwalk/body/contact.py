@@ -23,7 +23,7 @@ FRICTION = 0.7
 
 MESH_EDGE = 0.5
 """Length of the edges of a sphere's hydroelastic mesh, relative to its radius. With 1 the lowest point would be the
-corner of a polyhedron, and a sphere would sink 1.6 times as deep; with 0.25 a walk takes 1.4 times as long."""
+corner of a polyhedron, and a sphere would sink 1.6 times as deep; with 0.25 a walk takes 1.6 times as long."""
 
 SOLE_GRID = (2, 2)
 """Numbers of points along x and y of each part of a sole, for the asperity law: its corners (our choice). A finer grid

@@ -76,7 +76,7 @@ def _message(error: Exception) -> str:
 
 
 def _option_error(error: TyperException) -> str:
-    """The message of typer; with the value and what is allowed, which typer leaves out, for a number or a choice."""
+    """The message of typer. For a number or a choice it names the value and what is allowed, which typer leaves out."""
     message = error.format_message()
     of_pydantic: Any = error.__cause__
     if not hasattr(of_pydantic, "errors"):

@@ -191,7 +191,7 @@ def _require_different(points: Sequence[Point], where: str) -> None:
 
 
 def _hashable(value: Any) -> Any:
-    """A value that is equal to that of an equal value, and can be a key."""
+    """A hashable copy of the value of a cell; equal values have equal copies."""
     if isinstance(value, Mapping):
         return frozenset((name, _hashable(entry)) for name, entry in value.items())
     return tuple(map(_hashable, value)) if isinstance(value, list) else value
