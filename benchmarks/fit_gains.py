@@ -96,6 +96,7 @@ GAINS: Mapping[str, Gain] = {
     PLANNER + "swing.landing_speed_ratio": Gain(0.05, 0.3, 0.9),
     PLANNER + "swing.landing_deceleration": Gain(2.0, 10.0, 35.0),
     PLANNER + "swing.landing_sink_rate": Gain(0.06, 0.0, 0.4),
+    PLANNER + "swing.slow_landing_sink_rate": Gain(0.06, 0.0, 0.4),
     PLANNER + "rockers.unloading": Gain(3.0, 4.0, 20.0),
     PLANNER + "rockers.unloading_force": Gain(0.7, 1.5, 10.0),
     PLANNER + "height.walking": Gain(0.0025, 0.99, 1.03),

@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.numerics.scalars import clip
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.walking.motions import Cubic, PiecewiseCubic, PlanarMotion, ScalarMotion
 from humanwalk.walking.walking_reference import FootState
 
@@ -51,7 +51,17 @@ class SwingParameters:
     heel of a pitched foot meets the ground before the end of the swing, while it is fast."""
 
     landing_sink_rate: float = quantity(0.127, "m/s", 0.0, 0.5)
-    """Downward speed of the ankle at the planned touchdown."""
+    """Downward speed of the ankle at the planned touchdown, at `free_speed` and faster."""
+
+    slow_landing_sink_rate: float = quantity(0.3, "m/s", 0.0, 0.5)
+    """The same at `slow_speed` and slower; in between it is interpolated. A foot that sinks slower near the ground meets
+    it before the planned touchdown (docs/likeness_trials.md, "How should a foot land in a slow walk?")."""
+
+    slow_speed: float = quantity(0.9, "m/s", 0.0, 5.0)
+    """Forward speed up to which the walk is slow."""
+
+    free_speed: float = quantity(1.2, "m/s", 0.0, 5.0)
+    """Forward speed from which on it is not; more than `slow_speed`."""
 
     push_off: float = quantity(8.4, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
@@ -70,6 +80,13 @@ class SwingParameters:
 
     jerk_limit: float = quantity(6000.0, "m/s3", 100.0, 1e5)
     """Bound on the third derivative of the position, so that a foothold that jumps does not jerk the leg."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError if the speeds between which the sink rate changes are not in order."""
+        if not self.slow_speed < self.free_speed:
+            raise ParameterError(
+                f"slow_speed: {self.slow_speed:g} is too fast; allowed: below free_speed, {self.free_speed:g} m/s"
+            )
 
     def rolling_share(self, rise: float) -> float:
         """Share of the touchdown pitch for a step onto ground that is `rise` [m] above the plane of the stance foot."""
@@ -90,6 +107,11 @@ class SwingParameters:
     def touchdown_pitch(self, speed: float) -> float:
         """Pitch at touchdown, toes up [rad], at a forward speed [m/s]."""
         return min(self.toe_up * max(speed, 0.0), MAX_TOE_UP)
+
+    def sink_rate(self, speed: float) -> float:
+        """Downward speed of the ankle at the planned touchdown [m/s], at a forward speed [m/s]."""
+        rates = (self.slow_landing_sink_rate, self.landing_sink_rate)
+        return float(np.interp(speed, (self.slow_speed, self.free_speed), rates))
 
     def toe_off_acceleration(self, velocity: complex) -> complex:
         """Horizontal acceleration at toe-off [m/s2] for a velocity of the walk [m/s]."""
@@ -118,6 +140,7 @@ class SwingProfile:
         foot: FootState,
         flat_height: float,
         toe_up: float,
+        sink_rate: float,
         duration: float,
         parameters: SwingParameters,
         sole: SoleExtent,
@@ -128,6 +151,7 @@ class SwingProfile:
             foot: The foot at toe-off.
             flat_height: Height of the ankle if the foot stood flat there [m].
             toe_up: Pitch at touchdown, toes up positive [rad].
+            sink_rate: Downward speed of the ankle at touchdown [m/s].
             duration: Duration of the swing [s].
             parameters: Shape of the swing.
             sole: Extent of the sole.
@@ -141,7 +165,7 @@ class SwingProfile:
         points = np.column_stack((heights, pitches))
         quarter = duration / (len(points) - 1)
         first = quarter * np.array((foot.height_rate, foot.pitch_rate))
-        last = quarter * np.array((-parameters.landing_sink_rate, 0.0))
+        last = quarter * np.array((-sink_rate, 0.0))
         spline = CubicSpline(np.arange(len(points)), points, bc_type=((1, first), (1, last)))
         curves = spline.c[::-1].transpose(2, 1, 0).tolist()
         return SwingProfile(*(PiecewiseCubic(tuple(Cubic(*piece) for piece in curve)) for curve in curves))

@@ -34,7 +34,7 @@ def state_at(elapsed: float, steps: int = 1) -> PlannerState:
 
 def swing_to(foothold: Foothold, toes: float = 0.5) -> Swing:
     foot = FootState(OLD.position, 0j, ANKLE + 0.05, height_rate=0.2, yaw=0.1, pitch=0.9, pitch_rate=3.0, force=0.0)
-    profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, TIMING.single_support, PARAMETERS.swing, SOLE)
+    profile = SwingProfile.from_toe_off(foot, ANKLE, 0.25, 0.2, TIMING.single_support, PARAMETERS.swing, SOLE)
     return Swing(PlanarMotion(OLD.position), profile, foothold, start_yaw=0.1, start_toes=toes, rise=foothold.ground)
 
 
