@@ -128,9 +128,10 @@ class PathFollowing:
     pace_gain: float = quantity(0.3, "1/s", 0.0, 2.0)
     """Speed along the path per distance behind the nominal place, so that the mean speed is the commanded one."""
 
-    lag: float = quantity(0.25, "s", 0.0, 1.0)
-    """Time by which the nominal place is behind the commanded one: a step keeps the speed that was commanded when it
-    began, on average half a step earlier. Without the lag the walker would stop too far."""
+    lag: float = quantity(0.6, "s", 0.0, 1.0)
+    """Time by which the nominal place is behind the commanded one: the first step begins after the weight shift, and a
+    step keeps the speed that was commanded when it began. With 0.25 s a walker that starts to 1.4 m/s reaches 1.49 m/s
+    (docs/decisions/0058-path-after-the-start.md)."""
 
     pace_speed_limit: float = quantity(0.2, "m/s", 0.0, 1.0)
     """Largest speed along the path."""
@@ -162,15 +163,21 @@ class PathFollowing:
             correction += clip(pace, -self.pace_speed_limit, self.pace_speed_limit) * command.velocity / speed
         return correction
 
-    def limit_lead(self, path: CommandedPath, nearest: Place) -> CommandedPath:
-        """The path, displaced so that its end is within the distance that the pace can make up for.
+    def limit_lead(self, path: CommandedPath, nearest: Place, command: Command) -> CommandedPath:
+        """The path, displaced so that its end is at most as far ahead as the pace can make up for.
 
         A walker that was held up does not have to catch up with the command.
+
+        Args:
+            path: The path.
+            nearest: Its place nearest to the walker.
+            command: The current command.
         """
         if self.pace_gain == 0.0:
             return path
         lead = path.end.position - nearest.position
-        return path.shifted(_limited(lead, self.pace_speed_limit / self.pace_gain) - lead)
+        limit = self.lag * abs(command.velocity) + self.pace_speed_limit / self.pace_gain
+        return path.shifted(_limited(lead, limit) - lead)
 
 
 def _nearest_between(a: Place, b: Place, position: complex) -> Place:

@@ -143,7 +143,7 @@ class PhaseTransitions:
         is_paused = self._lags(state, body, dcm)
         command = command.at_pace(0.0) if is_paused else command
         following = self._parameters.path
-        path = following.limit_lead(state.path, state.path.nearest(midpoint, command))
+        path = following.limit_lead(state.path, state.path.nearest(midpoint, command), command)
         caution = self._parameters.caution.after(state.caution, state.largest_error)
         beside_foot = path.nearest(body.foot(state.swing_side).position, command)
         landed = PlannerState(

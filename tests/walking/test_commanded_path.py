@@ -69,7 +69,7 @@ def test_on_the_way_back_the_nearest_place_is_on_the_way_back(back: float, aside
     assert nearest.distance == pytest.approx(3.0 + back, abs=0.02)
 
 
-@given(st.floats(0.6, 3.0))
+@given(st.floats(FOLLOWING.lag + 0.35, 3.0))
 def test_a_walker_that_reverses_at_its_nominal_place_is_not_corrected(time: float) -> None:
     to_the_right, to_the_left = Command(0.0, -0.3), Command(0.0, 0.3)
     path = walked(to_the_left, time, walked(to_the_right, 6.0))
@@ -113,10 +113,10 @@ def test_at_the_nominal_place_there_is_no_correction() -> None:
 
 
 def test_the_path_waits_for_a_walker_that_was_held_up_but_keeps_its_lane() -> None:
-    lead = FOLLOWING.pace_speed_limit / FOLLOWING.pace_gain
+    lead = FOLLOWING.lag * STRAIGHT.forward + FOLLOWING.pace_speed_limit / FOLLOWING.pace_gain
     path = walked(STRAIGHT, 5.0)
     far = path.end.position - lead - 0.5 + 0.4j
-    limited = FOLLOWING.limit_lead(path, path.nearest(far, STRAIGHT))
+    limited = FOLLOWING.limit_lead(path, path.nearest(far, STRAIGHT), STRAIGHT)
     assert limited.end.position == pytest.approx(far.real + lead, abs=1e-6)
     near = path.end.position - 0.5 * lead + 0.4j
-    assert FOLLOWING.limit_lead(path, path.nearest(near, STRAIGHT)).end == path.end
+    assert FOLLOWING.limit_lead(path, path.nearest(near, STRAIGHT), STRAIGHT).end == path.end

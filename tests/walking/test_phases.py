@@ -240,7 +240,7 @@ def test_only_a_preview_of_irregular_footholds_keeps_the_command_for_which_it_wa
 def test_a_preview_knows_which_foot_is_raised_next(piece: Piece) -> None:
     phases = on_course(piece)
     far = advance(phases, in_single_support(1.01, phases=phases), replace(BODY, right=foot(-0.6 - 0.1j)), WALK)
-    near = advance(phases, in_single_support(1.01, phases=phases), landed_at(0.3 - 0.1j), WALK)
+    near = advance(phases, in_single_support(1.01, phases=phases), landed_at(0.5 - 0.1j), WALK)
     assert far.preview.raised == (0.0, 0.0)
     assert max(near.preview.raised) > 0.12
 

@@ -388,7 +388,7 @@ def test_steps_after_a_push_are_careful_and_then_ordinary_again() -> None:
 
 def test_the_pitch_at_toe_off_is_smaller_after_a_short_step() -> None:
     pitches = {}
-    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.6 + 0j)):
+    for time, state, reference, _ in pendulum_walk(planner(), walk_at(1.0), 8.0, push=(5.0, -0.7 + 0j)):
         behind = reference.foot(state.swing_side)
         if time > 4.0 and state.phase is Phase.DOUBLE_SUPPORT and behind.task is FootTask.HEEL_OFF:
             pitches[abs((state.right.position - state.left.position).real)] = behind.pitch[0]
