@@ -45,7 +45,7 @@ class NoStyle:
 class NormativeStyle:
     """Angles of people at the same dimensionless speed: curves that the walk is scored with."""
 
-    gains: TaskGains = critical(300.0, 0.15)
+    gains: TaskGains = critical(300.0, 0.1)
 
     ankle: float = quantity(0.01, "", 0.0, 10.0)
     """Weight of the ankles relative to hips and knees. The angle of a loaded ankle follows from the knee and from the
