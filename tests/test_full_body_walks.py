@@ -21,6 +21,7 @@ from humanwalk.quantity import GRAVITY
 from humanwalk.run.simulate import simulate
 from humanwalk.scenario import load_scenario, parse_scenario
 from humanwalk.sides import SIDES, Side
+from humanwalk.walking.commanded_path import PathFollowing
 
 pytestmark = pytest.mark.slow
 
@@ -30,7 +31,7 @@ COMMANDS = {
     "push": "[{time: 0.5, forward: 1.0}]",
     "stop": "[{time: 0.5, forward: 0.8}, {time: 3.5, forward: 0.0}]",
 }
-PUSH_TIME, PUSH_DURATION, IMPULSE = 4.5, 0.1, 30.0
+PUSH_TIME, PUSH_DURATION, IMPULSE = 4.7, 0.1, 30.0
 """Push at the chest, to the left [s, s, N s]."""
 STEADY_FROM = 4.0
 """Beginning of steady walking: 0.5 s of standing, 2.5 s of acceleration, one stride [s]."""
@@ -155,8 +156,9 @@ def test_the_walker_follows_the_commanded_path(name: str) -> None:
     deviation = [np.linalg.norm(walk.commanded_path - point, axis=1).min() for point in com]
     # The center of mass sways by 4 cm.
     assert max(deviation) < 0.09
-    # The first step comes after the weight has been shifted; after that nothing is lost.
-    assert np.linalg.norm(com[-1] - walk.commanded_path[-1]) < 0.4
+    nominal = walk.commanded_path[np.searchsorted(walk.time, walk.time[-1] - PathFollowing.lag)]
+    # A walker that stops does not make up for what it is behind.
+    assert np.linalg.norm(com[-1] - nominal) < (0.25 if name == "stop" else 0.1)
 
 
 def test_turning_ends_at_the_commanded_heading() -> None:
