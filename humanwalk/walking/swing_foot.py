@@ -54,8 +54,8 @@ class SwingParameters:
     """Downward speed of the ankle at the planned touchdown, at `free_speed` and faster."""
 
     slow_landing_sink_rate: float = quantity(0.3, "m/s", 0.0, 0.5)
-    """The same at `slow_speed` and slower; in between it is interpolated. A foot that sinks slower near the ground meets
-    it before the planned touchdown (docs/likeness_trials.md, "How should a foot land in a slow walk?")."""
+    """The same at `slow_speed` and slower; in between it is interpolated. A foot that sinks slower near the ground
+    meets it before the planned touchdown (docs/likeness_trials.md, "How should a foot land in a slow walk?")."""
 
     slow_speed: float = quantity(0.9, "m/s", 0.0, 5.0)
     """Forward speed up to which the walk is slow."""

@@ -77,14 +77,18 @@ def test_it_lands_on_the_heel_with_the_landing_speed(profile: SwingProfile) -> N
 
 
 def test_a_foot_that_lands_on_its_heel_is_higher_by_what_the_heel_is_lower_than_the_ankle() -> None:
-    profile = SwingProfile.from_toe_off(toe_off(), 0.068, 0.25, SINK_RATE, DURATION, SwingParameters(heel_height=1.0), SOLE)
+    profile = SwingProfile.from_toe_off(
+        toe_off(), 0.068, 0.25, SINK_RATE, DURATION, SwingParameters(heel_height=1.0), SOLE
+    )
     assert profile.at(1.0)[0].value == pytest.approx(0.068 - SwingParameters.landing_depth + SOLE.back * math.sin(0.25))
     assert profile.lowest(1.0, 0.068, SOLE) == pytest.approx(-SwingParameters.landing_depth)
 
 
 def test_a_foot_that_leaves_the_ground_as_people_do_clears_it_in_between() -> None:
     """Their ankle is 12 cm above its height in standing at toe-off (docs/likeness_trials.md)."""
-    profile = SwingProfile.from_toe_off(toe_off(0.068 + 0.12), 0.068, 0.25, SINK_RATE, DURATION, SwingParameters(), SOLE)
+    profile = SwingProfile.from_toe_off(
+        toe_off(0.068 + 0.12), 0.068, 0.25, SINK_RATE, DURATION, SwingParameters(), SOLE
+    )
     assert all(profile.at(s / 100)[0].value > 0.068 for s in range(95))
 
 
