@@ -19,7 +19,7 @@ def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
 def override(kind: type[Any], data: dict[str, Any], field: str, text: Any) -> None:
     """Replace a value in the mapping of a dataclass of parameters by YAML text; see `replace_value`.
 
-    A value that is not a string, as a Python program may give, is used as it is.
+    A value that is not a string, for example a number from Python, is used unchanged.
 
     Raises:
         ParameterError: the text is not YAML, or the field cannot be replaced.

@@ -112,8 +112,10 @@ class PhaseTransitions:
         has_rolled = state.phase is Phase.DOUBLE_SUPPORT
         toes = foot_behind(state, command, self._parameters).toes[0] if has_rolled else 0.0
         sole = self._footholds.sole
-        landing = (toe_up, swing.sink_rate(command.forward))
-        profile = SwingProfile.from_toe_off(foot, flat_height, *landing, state.timing.single_support, swing, sole)
+        sink_rate = swing.sink_rate(command.forward)
+        profile = SwingProfile.from_toe_off(
+            foot, flat_height, toe_up, sink_rate, state.timing.single_support, swing, sole
+        )
         acceleration = swing.toe_off_acceleration(command.velocity * state.direction)
         return state._replace(
             phase=Phase.SINGLE_SUPPORT,

@@ -58,10 +58,10 @@ class SwingParameters:
     meets it before the planned touchdown (docs/likeness_trials.md, "How should a foot land in a slow walk?")."""
 
     slow_speed: float = quantity(0.9, "m/s", 0.0, 5.0)
-    """Forward speed up to which the walk is slow."""
+    """Forward speed at and below which the ankle sinks at `slow_landing_sink_rate`."""
 
     free_speed: float = quantity(1.2, "m/s", 0.0, 5.0)
-    """Forward speed from which on it is not; more than `slow_speed`."""
+    """Forward speed at and above which the ankle sinks at `landing_sink_rate`; greater than `slow_speed`."""
 
     push_off: float = quantity(8.4, "1/m", 0.0, 30.0)
     """Horizontal acceleration at toe-off, per squared speed of the walk."""
