@@ -85,7 +85,8 @@ class SwingParameters:
         """Raise ParameterError if the speeds between which the sink rate changes are not in order."""
         if not self.slow_speed < self.free_speed:
             raise ParameterError(
-                f"slow_speed: {self.slow_speed:g} is too fast; allowed: below free_speed, {self.free_speed:g} m/s"
+                f"slow_speed: {self.slow_speed:g} is too fast; allowed: below free_speed, {self.free_speed:g} m/s; "
+                "lower it, or raise free_speed"
             )
 
     def rolling_share(self, rise: float) -> float:
