@@ -109,6 +109,11 @@ def build_value(value: Any, name: str) -> Any:
     return _build_any(value, _Place(name, object))
 
 
+def require_valid(parameters: Any) -> None:
+    """Raise ParameterError unless `build` accepts the parameters; Python does not check the fields of a dataclass."""
+    build(type(parameters), plain(parameters))
+
+
 def dump(parameters: Any) -> str:
     """A dataclass of parameters as YAML, every field written out; `build` makes an equal one of it."""
     return yaml_text(plain_value(parameters))
@@ -130,16 +135,20 @@ def plain_value(value: Any) -> Any:
 
 
 def _plain_field(field: dataclasses.Field[Any], value: Any) -> Any:
-    if "choices" in field.metadata:
-        return _tagged(field.metadata["choices"], value)
-    if "choices_by_name" in field.metadata:
-        return {name: _tagged(field.metadata["choices_by_name"], chosen) for name, chosen in value.items()}
-    if "choice_list" in field.metadata:
-        return [_tagged(field.metadata["choice_list"], chosen) for chosen in value]
+    metadata = field.metadata
+    if "choices" in metadata:
+        return _tagged(field.name, metadata["choices"], value)
+    if "choices_by_name" in metadata:
+        return {name: _tagged(field.name, metadata["choices_by_name"], chosen) for name, chosen in value.items()}
+    if "choice_list" in metadata:
+        return [_tagged(field.name, metadata["choice_list"], chosen) for chosen in value]
     return plain_value(value)
 
 
-def _tagged(choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
+def _tagged(field: str, choices: Mapping[str, type[Any]], value: Any) -> dict[str, Any]:
+    if type(value) not in choices.values():
+        kinds = ", ".join(kind.__name__ for kind in choices.values())
+        raise ParameterError(f"{field}: {shown(value)} is no choice; allowed: {kinds}; give an instance of one")
     entry, only = plain_value(value), only_field(type(value))
     return {tag_of(choices, value): entry[only] if only else entry}
 

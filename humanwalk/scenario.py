@@ -28,7 +28,7 @@ from humanwalk.choices import (
 )
 from humanwalk.choices.start import StartParameters
 from humanwalk.notebook import html_table
-from humanwalk.parameter_file import anchor_paths, build, dump, located, read_fields
+from humanwalk.parameter_file import anchor_paths, build, dump, located, read_fields, require_valid
 from humanwalk.parameter_override import override
 from humanwalk.quantity import ParameterError, choice, quantity, require_kind, tag_of
 from humanwalk.shipped_files import named_file, shipped_files
@@ -145,8 +145,9 @@ class Scenario:
 
 
 def require_scenario(value: object, function: str) -> None:
-    """Raise ParameterError unless a function was called with a Scenario."""
+    """Raise ParameterError unless a function was called with a Scenario that a file may hold."""
     require_kind(value, Scenario, function, 'load_scenario("thesis")')
+    require_valid(value)
 
 
 def shipped_scenarios() -> dict[str, Path]:

@@ -1,5 +1,6 @@
 """What a user of the Python package sees: short texts of objects, errors that name the function, types."""
 
+import dataclasses
 import inspect
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import pytest
 import humanwalk
 from humanwalk.diagrams.walker import make_diagram
 from humanwalk.run.folder import SUMMARY
+from humanwalk.scenario import SimulationParameters
 
 ROOT = Path(__file__).parents[1]
 
@@ -60,6 +62,25 @@ def test_a_name_in_place_of_a_scenario_produces_an_error_with_the_fix(function: 
     name = function.__name__
     with pytest.raises(humanwalk.ParameterError, match=rf"{name}: .* is no Scenario; .* write {name}\(load_scenario"):
         function(argument)
+
+
+@pytest.mark.parametrize(
+    ("fields", "error"),
+    [
+        ({"duration": -3.0}, r"duration: -3 is out of range; allowed: 0\.001 to 3600 s"),
+        ({"duration": "3"}, "duration: '3' is not a number; allowed: 0\\.001 to 3600 s"),
+        ({"contact": "point"}, "contact: 'point' is no choice; allowed: PointContact, HydroelasticContact, .* give an"),
+        ({"pushes": None}, "pushes: None is not a group of fields; allowed: given"),
+        ({"simulation": SimulationParameters(integrator="euler")}, "simulation.integrator: 'euler' is unknown"),  # type: ignore[arg-type]
+    ],
+)
+@pytest.mark.parametrize("function", [humanwalk.make_walker, humanwalk.simulate, make_diagram])
+def test_a_field_that_python_replaced_is_checked_as_one_of_a_file(
+    function: Any, fields: dict[str, Any], error: str
+) -> None:
+    scenario = dataclasses.replace(humanwalk.load_scenario("thesis"), **fields)
+    with pytest.raises(humanwalk.ParameterError, match=f"^{error}"):
+        function(scenario)
 
 
 def test_a_value_that_replaces_one_is_text_or_itself() -> None:
