@@ -1,5 +1,6 @@
 """What the commands share: the application, consoles, exit codes, options."""
 
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import IO, Annotated, Any, cast
 
@@ -93,6 +94,18 @@ LookOption = Annotated[
 CheckpointOption = Annotated[float, typer.Option(min=0.0, help="Wall-clock seconds between checkpoints.")]
 
 OverwriteOption = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there already.")]
+
+
+MAX_WARNINGS = 5
+"""Most warnings that are printed; a study of random pushes has one for each."""
+
+
+def print_warnings(lines: Sequence[str], console: Console) -> None:
+    """Print the first `MAX_WARNINGS` warnings, and how many more there are."""
+    for line in lines[:MAX_WARNINGS]:
+        console.print(f"warning: {line}", soft_wrap=True)
+    if len(lines) > MAX_WARNINGS:
+        console.print(f"warning: and {len(lines) - MAX_WARNINGS} more")
 
 
 def require_look(look: str) -> None:

@@ -9,6 +9,9 @@ from humanwalk.cli.common import SHOW, OverwriteOption, app, console, stdout
 from humanwalk.files import require_new, require_replaceable
 from humanwalk.quantity import ParameterError, printable
 
+PAGES = (".html", ".htm")
+"""Suffixes of a page."""
+
 
 @app.command(
     rich_help_panel=SHOW,
@@ -36,6 +39,10 @@ def compare(
                 f"-o {printable(output)}: no page with --no-page; allowed: one of the two; leave one out"
             )
         require_new(output, overwrite)
+        if output.suffix.lower() not in PAGES:
+            raise ParameterError(
+                f"-o {printable(output)}: unknown page format; allowed: {', '.join(PAGES)}; name it comparison.html"
+            )
     elif page:
         require_replaceable(path)
     opened = [Run.open(run) for run in runs]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from humanwalk.cli.common import print_warnings
 from humanwalk.cli.walk import LOST, illustrate, run_folder, write_or_rescue
 from humanwalk.quantity import ParameterError
 from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
@@ -58,8 +59,7 @@ def drive_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     require_drivable(loaded)
-    for line in loaded.warnings:
-        console.print(f"warning: {line}", soft_wrap=True)
+    print_warnings(loaded.warnings, console)
     first = output.absolute() if output else RUNS / NAME
     # An unusable folder is refused before the page opens. Every walk claims its own folder.
     with run_folder(output, first, loaded):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
+from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, print_warnings, stdout
 from humanwalk.files import require_replaceable
 from humanwalk.quantity import ParameterError
 
@@ -67,7 +67,8 @@ def run(
     part = Shard.parse(shard)
     loaded = load_study(study)
     with console.status("checking the points"):
-        loaded.require_valid()
+        warnings = loaded.warnings
+    print_warnings(warnings, console)
     with (
         caught_signals() as stopped,
         workers_client(workers, scheduler, slurm) as client,

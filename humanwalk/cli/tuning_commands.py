@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, stdout
+from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, print_warnings, stdout
 from humanwalk.cli.study_commands import RunsByDefault, SchedulerOption, SlurmOption, WorkersOption, workers_client
 from humanwalk.files import require_replaceable
 
@@ -38,6 +38,7 @@ def run(
     from humanwalk.study.tuning import load_tuning
 
     loaded = load_tuning(tuning)
+    print_warnings(loaded.runs.warnings, console)
     done: Mapping[int, Row] = {}
     with (
         caught_signals() as stopped,

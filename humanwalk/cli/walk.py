@@ -16,6 +16,7 @@ from rich.table import Column, Table
 
 from humanwalk.body.subject import Subject
 from humanwalk.choices.style import RecordedStyle
+from humanwalk.cli.common import print_warnings
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, numbers_of, printable
@@ -64,8 +65,7 @@ def walk_and_write(
     """
     loaded = load_scenario(scenario, overrides)
     name = name or name_of(scenario)
-    for line in loaded.warnings:
-        console.print(f"warning: {line}", soft_wrap=True)
+    print_warnings(loaded.warnings, console)
     recording = make_meshcat() if replay else None
     shown = make_meshcat(live=True) if live else None
     try:

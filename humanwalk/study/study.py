@@ -13,6 +13,7 @@ fields of the scenario as with `--set`; entries of lists are named by their inde
 """
 
 import os
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -117,13 +118,17 @@ class Study:
 
     def require_valid(self) -> None:
         """Raise ParameterError for the first point whose scenario cannot be used; see `scenario_at`."""
-        assert self._valid
+        _ = self.warnings
 
     @cached_property
-    def _valid(self) -> bool:
-        for _ in self.scenarios():
-            pass
-        return True
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings of the scenarios, each with the number of points that have it; see `Scenario.warnings`.
+
+        Raises:
+            ParameterError: as `require_valid`.
+        """
+        counts = Counter(line for scenario in self.scenarios() for line in scenario.warnings)
+        return tuple(f"{line} ({count} of {len(self.points)} points)" for line, count in counts.items())
 
 
 _FIELD = Values((None,))

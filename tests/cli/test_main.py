@@ -465,6 +465,11 @@ def test_a_comparison_that_cannot_be_written_is_refused_before_the_runs_are_read
     assert refusal("compare", "run", "run") == said
 
 
+def test_a_comparison_in_another_format_is_refused(refusal: Any, tmp_path: Path) -> None:
+    line = refusal("compare", "run", "run", "-o", "x.txt")
+    assert line == "humanwalk: -o x.txt: unknown page format; allowed: .html, .htm; name it comparison.html"
+
+
 @pytest.mark.parametrize(
     ("more", "named"),
     [
@@ -593,6 +598,18 @@ def test_an_empty_address_of_a_scheduler_is_refused(refusal: Any, tmp_path: Path
     (tmp_path / "short.yaml").write_text("set: {duration: 0.02}")
     assert refusal("study", "short.yaml", "-o", "x", "--scheduler", "").startswith("humanwalk: --scheduler : ")
     assert not (tmp_path / "x").exists()
+
+
+def test_a_study_prints_the_first_warnings_of_its_points(humanwalk: Any, tmp_path: Path) -> None:
+    late = "[{time: 3.0}, {time: 4.0}]"
+    (tmp_path / "late.yaml").write_text(
+        f"scenario: thesis\nset: {{pushes.given: {late}}}\nfactors: {{duration: [0.01, 0.02, 0.03]}}\n"
+    )
+    code, _, err = humanwalk("study", "late.yaml", "-o", "late", "--workers", "1")
+    assert code == 0
+    warnings = [line for line in err.splitlines() if line.startswith("warning: ")]
+    assert warnings[0] == "warning: pushes.given: the push at 3 s comes after the end at 0.01 s (1 of 3 points)"
+    assert warnings[5:] == ["warning: and 1 more"]
 
 
 def test_a_tuning_that_cannot_be_used_is_refused(refusal: Any, tmp_path: Path) -> None:

@@ -145,6 +145,17 @@ def test_points_that_cannot_be_simulated_are_refused_with_their_values(text: str
     assert str(raised.value).isprintable()
 
 
+def test_warnings_of_the_scenarios_are_counted() -> None:
+    push = "pushes.given: [{time: 1.0}]"
+    study = parse_study(f"scenario: stand\nset: {{{push}}}\nfactors: {{duration: [0.5, 1.0, 1.5]}}\n")
+    early, late = study.warnings
+    assert early == "pushes.given: the push at 1 s comes after the end at 0.5 s (1 of 3 points)"
+    assert late == "pushes.given: the push at 1 s comes after the end at 1 s (1 of 3 points)"
+    (both,) = parse_study(f"scenario: stand\nset: {{{push}, duration: 0.5}}\nfactors: {{seed: [0, 1]}}\n").warnings
+    assert both.endswith("(2 of 2 points)")
+    assert parse_study("scenario: stand\n").warnings == ()
+
+
 def test_unknown_study_is_refused() -> None:
     with pytest.raises(ParameterError, match="no such study or file"):
         load_study("nothing")
