@@ -21,8 +21,8 @@ CURVES = normative_curves(SUBJECT.skeleton.hip_height, PELVIC_TILT)
 SPEED, STEP = 0.9, 0.58
 
 
-def recording(duration: float = 5.0, speed: float = SPEED) -> RecordedMotion:
-    """People's curves at a speed, the right touchdown at 0.2 s."""
+def recording(duration: float = 5.0, speed: float = SPEED, heading: float = 0.0) -> RecordedMotion:
+    """People's curves at a speed, the right touchdown at 0.2 s, along a heading [rad]."""
     time = np.arange(0.0, duration, 0.01)
     joints = JointMap.of(kinematics_plant(SUBJECT))
     angles: Array = np.zeros((time.size, len(joints.names)))
@@ -30,7 +30,8 @@ def recording(duration: float = 5.0, speed: float = SPEED) -> RecordedMotion:
         phase = (time - 0.2) / (2.0 * STEP) + offset
         columns = [joints.names.index(name) for name in LEGS[side].sagittal]
         angles[:, columns] = [CURVES.at(side, value, SPEED).value for value in phase]
-    path = np.column_stack((speed * time, 0.0 * time, 0.0 * time + 0.93))
+    way = speed * time
+    path = np.column_stack((np.cos(heading) * way, np.sin(heading) * way, 0.0 * time + 0.93))
     return RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0)
 
 
@@ -41,22 +42,35 @@ def test_speed_and_step_are_those_of_the_recording() -> None:
     assert gait.curves.lowest_speed == gait.speed
 
 
-def test_standing_before_and_after_the_walk_is_not_counted() -> None:
+def in_sequence(*parts: RecordedMotion) -> RecordedMotion:
+    """Recordings one after the other, each from where the one before ended."""
+    times, positions = [parts[0].time], [parts[0].pelvis_position]
+    for part in parts[1:]:
+        times.append(times[-1][-1] + 0.01 + part.time)
+        positions.append(positions[-1][-1] + part.pelvis_position - part.pelvis_position[0])
+    time, angles = np.concatenate(times), np.concatenate([part.angles for part in parts])
+    return RecordedMotion(time, angles, np.zeros((time.size, 3)), np.concatenate(positions), ease_in=0.0)
+
+
+def stand(posture: Array, duration: float = 5.0) -> RecordedMotion:
+    """A posture that sways by 0.6 degrees at 0.8 Hz."""
+    time = np.arange(0.0, duration, 0.01)
+    angles: Array = posture + 0.01 * np.sin(5.0 * time)[:, None]
+    path = np.tile([0.0, 0.0, 0.93], (time.size, 1))
+    return RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0)
+
+
+def test_standing_before_after_and_within_the_walk_is_not_counted() -> None:
     walk = recording()
-    time = np.concatenate((walk.time, walk.time[-1] + 0.01 + walk.time, 2.0 * walk.time[-1] + 0.02 + walk.time))
-    angles = np.concatenate(
-        (np.tile(walk.angles[0], (walk.time.size, 1)), walk.angles, np.tile(walk.angles[-1], (walk.time.size, 1)))
-    )
-    path = np.concatenate(
-        [
-            np.tile(walk.pelvis_position[0], (walk.time.size, 1)),
-            walk.pelvis_position,
-            np.tile(walk.pelvis_position[-1], (walk.time.size, 1)),
-        ]
-    )
-    gait = recorded_gait(RecordedMotion(time, angles, np.zeros((time.size, 3)), path, ease_in=0.0), SUBJECT, "trial")
-    assert gait.speed == pytest.approx(SPEED, abs=0.01)
-    assert gait.step == pytest.approx(STEP, abs=0.01)
+    begin, end = stand(0.0 * walk.angles[0]), stand(walk.angles[-1])
+    for motion in (in_sequence(begin, walk, end), in_sequence(walk, begin, walk)):
+        gait = recorded_gait(motion, SUBJECT, "trial")
+        assert gait.speed == pytest.approx(SPEED, abs=0.01)
+        assert gait.step == pytest.approx(STEP, abs=0.01)
+
+
+def test_the_speed_is_that_along_the_walk() -> None:
+    assert recorded_gait(recording(heading=0.3), SUBJECT, "trial").speed == pytest.approx(SPEED, abs=1e-3)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -82,6 +96,8 @@ def of_two_rows(duration: float) -> RecordedMotion:
     [
         (recording(1.0), "touchdowns of the"),
         (recording(speed=-SPEED), "the pelvis moves at -0.9"),
+        (recording(speed=0.01), "in a stride the pelvis moves by 0.012 m, and the ankle by 0.66 m.*leave out the path"),
+        (recording(heading=0.4), "the pelvis moves 23 deg from x; allowed: up to 20 deg; turn the recording"),
         (of_two_rows(3600.0), "0 touchdowns of the"),
         (of_two_rows(1e10), r"1e\+10 s long; allowed: up to 3600 s"),
     ],
