@@ -145,8 +145,8 @@ def motion(variant: Variant, duration: float) -> Motion:
 
 def gait_of(time: Array, force: Array, com: Array, begin: float) -> dict[str, float | None]:
     """Speed, mean time between two touchdowns, and greatest vertical force, from `begin` [s] on."""
-    steps = np.diff(np.sort(np.concatenate([foot_events(time, force[:, i], begin).touchdown_times for i in (2, 5)])))
     steady = time >= begin
+    steps = np.diff(np.sort(np.concatenate([foot_events(time, force[:, i], steady).touchdown_times for i in (2, 5)])))
     return {
         "speed_m_s": float(np.polyfit(time[steady], com[steady, 0], 1)[0]) if steady.sum() > 10 else None,
         "step_time_s": float(steps.mean()) if steps.size else None,

@@ -1,12 +1,13 @@
 """Torque, work and cost of transport of the joints."""
 
+from collections.abc import Sequence
 from typing import TypedDict
 
 import numpy as np
 import pyarrow as pa
 
 from humanwalk.measures.signals import TIME, matrix
-from humanwalk.numerics import Array, Indices, Mask
+from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 
 
@@ -46,19 +47,18 @@ def cost_of_transport(signals: pa.Table, rows: Mask, mass: float, distance: floa
     return float(np.trapezoid(power, time) / (mass * GRAVITY * distance))
 
 
-def joint_work(signals: pa.Table, touchdowns: Indices) -> dict[str, JointWork] | None:
+def joint_work(signals: pa.Table, strides: Sequence[tuple[int, int]]) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
-    Strides end and begin at the rows `touchdowns`; without a stride there is None.
+    A stride lasts from a row to another; without a stride there is None.
     """
-    strides = len(touchdowns) - 1
-    if strides < 1:
+    if not strides:
         return None
-    rows = slice(touchdowns[0], touchdowns[-1] + 1)
-    time = signals[TIME].to_numpy()[rows]
-    power = joint_power(signals)[rows]
-    positive = np.trapezoid(np.maximum(power, 0.0), time, axis=0) / strides
-    negative = np.trapezoid(np.minimum(power, 0.0), time, axis=0) / strides
+    time, power = signals[TIME].to_numpy(), joint_power(signals)
+    positive, negative = (
+        np.mean([np.trapezoid(part[a : b + 1], time[a : b + 1], axis=0) for a, b in strides], axis=0)
+        for part in (np.maximum(power, 0.0), np.minimum(power, 0.0))
+    )
     return {
         name: {"positive": float(delivered), "negative": float(absorbed)}
         for name, delivered, absorbed in zip(joint_names(signals), positive, negative, strict=True)

@@ -49,12 +49,14 @@ class FootEvents:
         contact: whether the foot is in stance, shape (rows,).
         touchdowns: first rows of the stances, without a stance that the record begins with.
         toe_offs: first rows after the stances, without a stance that the record ends with.
+        counted: rows of which events, strides and stances count, shape (rows,).
     """
 
     time: Array
     contact: Mask
     touchdowns: Indices
     toe_offs: Indices
+    counted: Mask
 
     @property
     def touchdown_times(self) -> Array:
@@ -63,21 +65,22 @@ class FootEvents:
 
     @property
     def strides(self) -> list[tuple[int, int]]:
-        """Rows of each touchdown and the next."""
-        return list(pairwise(self.touchdowns.tolist()))
+        """Rows of each touchdown and the next, if all rows between them count."""
+        return [(a, b) for a, b in pairwise(self.touchdowns.tolist()) if self.counted[a:b].all()]
 
     @property
     def stances(self) -> list[tuple[int, int]]:
-        """Rows of touchdown and toe-off of each whole stance."""
+        """Rows of touchdown and toe-off of each whole stance of which all rows count."""
         after = np.searchsorted(self.toe_offs, self.touchdowns)
-        return [
+        whole = [
             (int(down), int(self.toe_offs[i]))
             for down, i in zip(self.touchdowns, after, strict=True)
             if i < self.toe_offs.size
         ]
+        return [(a, b) for a, b in whole if self.counted[a:b].all()]
 
 
-def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents:
+def foot_events(time: Array, force: Array, counted: Mask | None = None) -> FootEvents:
     """Find stance, touchdown and toe-off of one foot.
 
     A phase that the record cuts off at its start or end is not known to be a stance or a swing unless it is as long as
@@ -86,9 +89,10 @@ def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents
     Args:
         time: of the samples [s], increasing, shape (rows,).
         force: vertical ground reaction force [N], shape (rows,).
-        begin: time from which events count [s].
+        counted: rows of which events count, shape (rows,); None for all.
     """
     contact = in_contact(force)
+    counted = np.ones_like(contact) if counted is None else counted
     rows = force.size
 
     def short(mask: Mask, least: float) -> Iterator[tuple[int, int]]:
@@ -108,18 +112,18 @@ def foot_events(time: Array, force: Array, begin: float = -np.inf) -> FootEvents
     for first, end in short(~contact, MIN_SWING_S):
         contact[first:end] = True
     change = np.diff(contact.astype(int))
-    counted = time[1:] >= begin
     return FootEvents(
         time=time,
         contact=contact,
-        touchdowns=np.flatnonzero((change > 0) & counted) + 1,
-        toe_offs=np.flatnonzero((change < 0) & counted) + 1,
+        touchdowns=np.flatnonzero((change > 0) & counted[1:]) + 1,
+        toe_offs=np.flatnonzero((change < 0) & counted[1:]) + 1,
+        counted=counted,
     )
 
 
-def events_of(signals: pa.Table, side: Side, begin: float = -np.inf) -> FootEvents:
-    """Events of one foot of a record from a time [s] on."""
-    return foot_events(signals[TIME].to_numpy(), signals[f"{side.lower()}_foot.force_z_N"].to_numpy(), begin)
+def events_of(signals: pa.Table, side: Side, counted: Mask | None = None) -> FootEvents:
+    """Events of one foot of a record; see `foot_events`."""
+    return foot_events(signals[TIME].to_numpy(), signals[f"{side.lower()}_foot.force_z_N"].to_numpy(), counted)
 
 
 def in_contact(force: Array) -> Mask:

@@ -6,6 +6,7 @@ commanded path beside the walker (`humanwalk.measures.path`), widths to its left
 """
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from typing import TypedDict
 
 import numpy as np
@@ -16,7 +17,7 @@ from humanwalk.body.limbs import other_side
 from humanwalk.measures.effort import JointWork, joint_work
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.path import horizontal
-from humanwalk.numerics import Array
+from humanwalk.numerics import Array, Mask
 
 
 class OfFeet(TypedDict):
@@ -57,15 +58,15 @@ class GaitMeasures(TypedDict):
     joint_work_J: dict[str, JointWork] | None
 
 
-def gait_measures(signals: pa.Table, begin: float, facing: Array) -> GaitMeasures:
+def gait_measures(signals: pa.Table, counted: Mask, facing: Array) -> GaitMeasures:
     """All gait measures of a record.
 
     Args:
         signals: the record.
-        begin: time from which it counts [s].
+        counted: rows of it that count, shape (rows,).
         facing: heading at every row, see `Directions`.
     """
-    feet = {side: events_of(signals, side, begin) for side in SIDES}
+    feet = {side: events_of(signals, side, counted) for side in SIDES}
     return {
         "strides": {"right": len(feet["Right"].strides), "left": len(feet["Left"].strides)},
         "stride_time_s": _means(lambda side: stride_times(feet[side])),
@@ -81,26 +82,27 @@ def gait_measures(signals: pa.Table, begin: float, facing: Array) -> GaitMeasure
             "x": _means(lambda side: cop_excursions(signals, side, feet[side], facing).real),
             "y": _means(lambda side: cop_excursions(signals, side, feet[side], facing).imag),
         },
-        "joint_work_J": joint_work(signals, feet["Right"].touchdowns),
+        "joint_work_J": joint_work(signals, feet["Right"].strides),
     }
 
 
 def stride_times(foot: FootEvents) -> Array:
     """Duration of every stride [s]."""
-    return np.diff(foot.touchdown_times)
+    return np.array([foot.time[b] - foot.time[a] for a, b in foot.strides])
 
 
 def stride_lengths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
     """Advance of the sole from touchdown to touchdown, along the mean heading of both [m]."""
-    strides, at = np.diff(_sole(signals, side)[foot.touchdowns]), facing[foot.touchdowns]
-    mean = at[:-1] + at[1:]
-    return _relative(strides, mean / np.abs(mean)).real
+    begin, end = np.array(foot.strides, dtype=int).reshape(-1, 2).T
+    sole, mean = _sole(signals, side), facing[begin] + facing[end]
+    return _relative(sole[end] - sole[begin], mean / np.abs(mean)).real
 
 
 def step_times(foot: FootEvents, other: FootEvents) -> Array:
     """Time from the other foot's last touchdown to this foot's [s]."""
     before = np.searchsorted(other.touchdowns, foot.touchdowns)
-    return (foot.touchdown_times - other.touchdown_times[before - 1])[before > 0] if before.any() else np.empty(0)
+    steps = [(other.touchdowns[k - 1], down) for k, down in zip(before, foot.touchdowns, strict=True) if k > 0]
+    return np.array([foot.time[b] - foot.time[a] for a, b in steps if foot.counted[a:b].all()])
 
 
 def step_lengths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
@@ -126,9 +128,11 @@ def double_support_shares(foot: FootEvents, other: FootEvents) -> Array:
 
 
 def cadence(feet: Mapping[Side, FootEvents]) -> float | None:
-    """Steps of both feet per minute, from the first to the last touchdown."""
-    times = np.concatenate([foot.touchdown_times for foot in feet.values()])
-    return float(60.0 * (times.size - 1) / np.ptp(times)) if times.size > 1 else None
+    """Steps of both feet per minute."""
+    time, counted = feet["Right"].time, feet["Right"].counted
+    downs = np.sort(np.concatenate([foot.touchdowns for foot in feet.values()]))
+    times = [time[b] - time[a] for a, b in pairwise(downs) if counted[a:b].all()]
+    return float(60.0 / np.mean(times)) if times else None
 
 
 def stride_speed(signals: pa.Table, feet: dict[Side, FootEvents], facing: Array) -> float | None:

@@ -149,12 +149,12 @@ def _require_walk(walk: Walk) -> None:
     counts = {side: len(foot.strides) for side, foot in walk.feet.items()}
     if min(counts.values()) < MIN_STRIDES:
         raise ParameterError(
-            f"strides: {counts['Right']} of the right leg and {counts['Left']} of the left from {walk.begin:g} s on, "
-            f"where the walk is steady; allowed: from {MIN_STRIDES} of each on; walk longer, or a scenario that walks"
+            f"strides: {counts['Right']} of the right leg and {counts['Left']} of the left in the steady "
+            f"walk, from {walk.begin:g} s on; allowed: from {MIN_STRIDES} of each on; walk longer at one speed"
         )
     for side, foot in walk.feet.items():
         places = matrix(walk.signals, [f"{side.lower()}_sole.{axis}_m" for axis in "xy"])
-        ways = np.diff(places[foot.touchdowns], axis=0)
+        ways = np.array([places[end] - places[begin] for begin, end in foot.strides])
         angle = float(np.abs(np.arctan2(ways[:, 1], ways[:, 0])).max())
         if angle > MAX_HEADING:
             raise ParameterError(

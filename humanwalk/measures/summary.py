@@ -16,6 +16,7 @@ from humanwalk.measures.fall import FallReport, report_fall
 from humanwalk.measures.gait_measures import GaitMeasures, OfFeet, gait_measures, of_feet
 from humanwalk.measures.path import distance_along, path_deviation, path_directions
 from humanwalk.measures.signals import TIME, matrix
+from humanwalk.measures.steady import steady_rows
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import printable
 from humanwalk.scenario import Scenario
@@ -127,25 +128,23 @@ def summarize(scenario: Scenario, signals: pa.Table, end: str, wall_time: float,
         "realtime_factor": float(time[-1]) / wall_time,
         "versions": {name: version(name) for name in PACKAGES},
         "seed": scenario.seed,
-        "gait": gait_measures(signals, steady_from, directions.facing) if physics else None,
+        "gait": gait_measures(signals, steady_rows(signals, scenario), directions.facing) if physics else None,
     }
     finite: Summary = _finite(summary)
     return finite
 
 
 def foot_lift(signals: pa.Table, side: Side) -> float | None:
-    """Median over the strides of the sole's greatest height [m] above its initial one, less the rise of the ground.
-
-    The ground has risen to the higher of the places where the foot stands before and after the swing. None without
-    strides.
+    """Median over the strides of the sole's greatest height [m] above the higher of the places where it stands before
+    and after the swing; None without strides.
     """
     height = signals[f"{side.lower()}_sole.z_m"].to_numpy()
     strides = [height[begin:end] for begin, end in events_of(signals, side).strides]
     if not strides:
         return None
     ground = np.array([stride.min() for stride in strides])
-    rise = np.maximum(ground, np.append(ground[1:], ground[-1])) - ground[0]
-    return float(np.median([stride.max() for stride in strides] - rise) - height[0])
+    higher = np.maximum(ground, np.append(ground[1:], ground[-1]))
+    return float(np.median([stride.max() for stride in strides] - higher))
 
 
 def foot_line_error(signals: pa.Table, side: Side) -> float:

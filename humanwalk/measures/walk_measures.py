@@ -41,6 +41,7 @@ from humanwalk.measures.human_ranges import (
 )
 from humanwalk.measures.path import Directions, distance_along, path_directions
 from humanwalk.measures.signals import TIME, UNITS
+from humanwalk.measures.steady import steady_rows
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario
@@ -53,7 +54,7 @@ class Walk:
     Attributes:
         signals: the record.
         scenario: what was simulated.
-        feet: events of both feet from `begin` on.
+        feet: events of both feet in the steady part.
         begin: time from which the walk is steady [s].
     """
 
@@ -64,9 +65,10 @@ class Walk:
 
     @staticmethod
     def of(signals: pa.Table, scenario: Scenario) -> "Walk":
-        """The part of a record from `Controller.steady_from` on."""
-        begin = scenario.controller.steady_from(scenario.subject)
-        return Walk(signals, scenario, {side: events_of(signals, side, begin) for side in SIDES}, begin)
+        """The steady part of a record; see `steady_rows`."""
+        counted = steady_rows(signals, scenario)
+        feet = {side: events_of(signals, side, counted) for side in SIDES}
+        return Walk(signals, scenario, feet, scenario.controller.steady_from(scenario.subject))
 
     @property
     def mass(self) -> float:

@@ -257,9 +257,21 @@ def test_noise_around_the_thresholds_moves_events_along_the_slope_of_the_force_o
 # Of a record.
 
 
-def test_events_of_a_record_count_from_a_time_on() -> None:
+def test_events_of_a_record_are_those_of_the_rows_that_count() -> None:
     force = force_of(*STANCES)
-    signals = pa.table({TIME: PERIOD * np.arange(force.size), "left_foot.force_z_N": force})
-    np.testing.assert_allclose(events_of(signals, "Left", begin=0.8).touchdown_times, [1.5, 2.5])
-    assert len(events_of(signals, "Left", begin=0.8).strides) == 1
-    assert events_of(signals, "Left", begin=0.8).contact.sum() == events_of(signals, "Left").contact.sum()
+    time = PERIOD * np.arange(force.size)
+    signals = pa.table({TIME: time, "left_foot.force_z_N": force})
+    late = events_of(signals, "Left", time >= 0.8)
+    np.testing.assert_allclose(late.touchdown_times, [1.5, 2.5])
+    assert len(late.strides) == 1
+    assert late.contact.sum() == events_of(signals, "Left").contact.sum()
+
+
+def test_a_stride_or_stance_with_a_row_that_does_not_count_is_left_out() -> None:
+    force = force_of(*STANCES)
+    time = PERIOD * np.arange(force.size)
+    whole = foot_events(time, force)
+    for (a, b), row in ((whole.strides[1], whole.strides[1][0] + 1), (whole.strides[0], whole.strides[0][1] - 1)):
+        events = foot_events(time, force, np.arange(time.size) != row)
+        assert events.strides == [stride for stride in whole.strides if stride != (a, b)]
+        assert events.stances == [(down, off) for down, off in whole.stances if not down <= row < off]

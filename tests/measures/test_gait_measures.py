@@ -50,7 +50,7 @@ def walk(
 
 def measured(signals: pa.Table, begin: float) -> Any:
     """The measures of a walk along x."""
-    return gait_measures(signals, begin, np.ones(signals.num_rows, dtype=complex))
+    return gait_measures(signals, signals[TIME].to_numpy() >= begin, np.ones(signals.num_rows, dtype=complex))
 
 
 def both(value: float) -> dict[str, Any]:
@@ -75,7 +75,7 @@ def test_measures_do_not_depend_on_where_the_walk_leads(heading: float) -> None:
         place = direction * (signals[f"{point}x_m"].to_numpy() + 1j * signals[f"{point}y_m"].to_numpy())
         turned |= {f"{point}x_m": place.real, f"{point}y_m": place.imag}
     facing = np.full(signals.num_rows, direction)
-    found, expected = gait_measures(pa.table(turned), 0.0, facing), measured(signals, 0.0)
+    found, expected = gait_measures(pa.table(turned), np.ones(facing.size, dtype=bool), facing), measured(signals, 0.0)
     for name in ("stride_length_m", "step_length_m", "step_width_m"):
         assert found[name] == pytest.approx(expected[name]), name
     assert found["stride_speed_m_s"] == pytest.approx(expected["stride_speed_m_s"])
