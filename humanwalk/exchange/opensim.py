@@ -18,6 +18,7 @@ from humanwalk.exchange.motion import ground_forces, marker_paths, sample_rate
 from humanwalk.files import write_text
 from humanwalk.measures.curves import ANGLES
 from humanwalk.measures.effort import joint_names
+from humanwalk.measures.path import path_directions
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.motion.motion_table import MotionTable, storage_text
 from humanwalk.numerics import Array
@@ -81,10 +82,13 @@ def angles(run: Run) -> MotionTable:
 
 
 def clinical_angles(run: Run) -> MotionTable:
-    """The angles of a gait report (`humanwalk.measures.curves.ANGLES`) of both legs [deg]: hip_flexion_r and so on."""
-    mass = run.scenario.subject.mass
+    """The angles of a gait report (`humanwalk.measures.curves.ANGLES`) of both legs [deg]: hip_flexion_r and so on.
+
+    Rotation of the pelvis and foot progression are relative to the heading of the commanded path.
+    """
+    mass, facing = run.scenario.subject.mass, path_directions(run.signals, run.scenario.controller.command).facing
     columns = {
-        f"{angle.quantity.removesuffix('_deg')}_{side[0].lower()}": angle.of(run.signals, side, mass)
+        f"{angle.quantity.removesuffix('_deg')}_{side[0].lower()}": angle.of(run.signals, side, mass, facing)
         for side in SIDES
         for angle in ANGLES.values()
     }

@@ -18,7 +18,7 @@ from humanwalk.body.limbs import LEGS, Leg
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.gait.normative import CYCLE, PEOPLE_LEG, Band, SpeedGroup, moment_scale, people, power_scale
 from humanwalk.measures.events import FootEvents
-from humanwalk.measures.orientation import pelvis_rotation, sole_rotation
+from humanwalk.measures.orientation import heading_rotation, pelvis_rotation, sole_rotation
 from humanwalk.numerics import Array
 
 JOINTS: dict[str, Callable[[Leg], str]] = {
@@ -46,7 +46,8 @@ class Curve:
         positive: its positive sense.
         unit: of its values.
         quantity: its name in the human data.
-        of: the values of a record relative to one leg, with the body mass [kg], shape (rows,).
+        of: the values of a record relative to one leg, with the body mass [kg] and the heading of the walk at every row
+            (`Directions.facing`, or 1 for a walk along x), shape (rows,).
         people_scale: factor from the unit of the human data to `unit`.
         leg_scale: factor from the people of the human data to dynamically similar bodies with a leg length [m].
     """
@@ -54,7 +55,7 @@ class Curve:
     positive: str
     unit: str
     quantity: str
-    of: Callable[[pa.Table, Side, float], Array]
+    of: Callable[[pa.Table, Side, float, Array | complex], Array]
     people_scale: float = 1.0
     leg_scale: Callable[[float], float] = lambda leg: 1.0
 
@@ -65,28 +66,43 @@ class Curve:
 
 
 def _joint(
-    joint: Callable[[Leg], str], factor: float, zero: float, signals: pa.Table, side: Side, mass: float
+    joint: Callable[[Leg], str],
+    factor: float,
+    zero: float,
+    signals: pa.Table,
+    side: Side,
+    mass: float,
+    facing: Array | complex,
 ) -> Array:
     angle: Array = signals[f"{joint(LEGS[side])}.angle_rad"].to_numpy()
     return np.degrees(factor * angle + zero)
 
 
-def _pelvis(axis: int, left: int, right: int, zero: float, signals: pa.Table, side: Side, mass: float) -> Array:
-    angles: Array = pelvis_rotation(signals).as_euler("ZXY")[:, axis]
+def _pelvis(
+    axis: int,
+    left: int,
+    right: int,
+    zero: float,
+    signals: pa.Table,
+    side: Side,
+    mass: float,
+    facing: Array | complex,
+) -> Array:
+    angles: Array = (heading_rotation(facing).inv() * pelvis_rotation(signals)).as_euler("ZXY")[:, axis]
     return np.degrees(angles * (left if side == "Left" else right) + zero)
 
 
-def _progression(signals: pa.Table, side: Side, mass: float) -> Array:
-    forward = sole_rotation(signals, side).apply((1.0, 0.0, 0.0))
+def _progression(signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
+    forward = (heading_rotation(facing).inv() * sole_rotation(signals, side)).apply((1.0, 0.0, 0.0))
     angle: Array = np.degrees(np.arctan2(forward[:, 1], forward[:, 0]))
     return angle if side == "Right" else -angle
 
 
-def _moment(joint: str, signals: pa.Table, side: Side, mass: float) -> Array:
+def _moment(joint: str, signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
     return -joint_signal(signals, joint, side, "torque_N_m") / mass
 
 
-def _power(joint: str, signals: pa.Table, side: Side, mass: float) -> Array:
+def _power(joint: str, signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
     torque, rate = (joint_signal(signals, joint, side, what) for what in ("torque_N_m", "velocity_rad_s"))
     return torque * rate / mass
 

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from humanwalk.body import Side
 from humanwalk.gait.normative import Band, SpeedGroup
-from humanwalk.measures.curves import CURVES, JOINTS, over_strides
+from humanwalk.measures.curves import CURVES, JOINTS
 from humanwalk.measures.signals import matrix
 from humanwalk.measures.symmetry import Asymmetry, asymmetries
 from humanwalk.measures.walk_measures import MEASURES, Measure, Walk
@@ -126,12 +126,7 @@ def compare(signals: pa.Table, scenario: Scenario) -> Comparison:
     _require_walk(walk)
     pace = walk.pace
     curves = {
-        name: {
-            side: Likeness.of(
-                over_strides(foot, curve.of(signals, side, walk.mass)), curve.people(pace.group, pace.leg)
-            )
-            for side, foot in walk.feet.items()
-        }
+        name: {side: Likeness.of(walk.strides_of(name, side), curve.people(pace.group, pace.leg)) for side in walk.feet}
         for name, curve in CURVES.items()
     }
     return Comparison(

@@ -7,11 +7,17 @@ from scipy.spatial.transform import Rotation
 from humanwalk.body import Side, human
 from humanwalk.body.limbs import LEGS
 from humanwalk.measures.signals import matrix
+from humanwalk.numerics import Array
 
 
 def pelvis_rotation(signals: pa.Table) -> Rotation:
     """R_WP of the pelvis frame at every row."""
     return Rotation.from_quat(matrix(signals, [f"pelvis.quaternion_{part}" for part in "xyzw"]))
+
+
+def heading_rotation(facing: Array | complex) -> Rotation:
+    """Rotation about the vertical from x to headings of length 1, x + iy; one, or one for every row."""
+    return Rotation.from_rotvec(np.multiply.outer(np.angle(facing), (0.0, 0.0, 1.0)))
 
 
 def sole_rotation(signals: pa.Table, side: Side) -> Rotation:

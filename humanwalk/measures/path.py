@@ -10,6 +10,7 @@ import pyarrow as pa
 from scipy.integrate import cumulative_trapezoid
 from scipy.spatial import KDTree
 
+from humanwalk.body import Side
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array, Mask
 from humanwalk.walking.command import CommandParameters, CommandProfile
@@ -68,6 +69,13 @@ def horizontal(signals: pa.Table, point: str) -> Array:
     """A point of a record over the level plane [m], complex, (rows,)."""
     place: Array = signals[f"{point}.x_m"].to_numpy() + 1j * signals[f"{point}.y_m"].to_numpy()
     return place
+
+
+def fore_aft_force(signals: pa.Table, side: Side, facing: Array) -> Array:
+    """Force of the ground on a foot along the heading of the walk [N], shape (rows,)."""
+    x, y = (signals[f"{side.lower()}_foot.force_{axis}_N"].to_numpy() for axis in "xy")
+    along: Array = ((x + 1j * y) * np.conj(facing)).real
+    return along
 
 
 def distance_along(signals: pa.Table, rows: Mask, directions: Array) -> float:

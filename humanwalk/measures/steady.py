@@ -24,4 +24,5 @@ def steady_rows(signals: pa.Table, scenario: Scenario) -> Mask:
     velocity = forward + 1j * sideways
     changes = np.diff(velocity, prepend=velocity[:1]) != 0.0
     changed = np.maximum.accumulate(np.where(changes, time, -np.inf))
-    return begun & (velocity != 0.0) & (time - changed >= subject.scale.time * SETTLING)
+    steady: Mask = begun & (velocity != 0.0) & (time - changed >= subject.scale.time * SETTLING)
+    return steady

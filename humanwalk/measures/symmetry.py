@@ -11,7 +11,7 @@ import numpy as np
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.limbs import other_side
-from humanwalk.measures.curves import CURVES, JOINTS, over_strides
+from humanwalk.measures.curves import JOINTS, over_strides
 from humanwalk.measures.events import FootEvents
 from humanwalk.measures.gait_measures import (
     stance_shares,
@@ -55,15 +55,14 @@ OfFoot = Callable[[Walk, Side, FootEvents], Array]
 
 def _range_of(joint: str) -> OfFoot:
     def of_foot(walk: Walk, side: Side, foot: FootEvents) -> Array:
-        strides = over_strides(foot, CURVES[joint].of(walk.signals, side, walk.mass))
-        return np.ptp(strides, axis=1)
+        return np.ptp(walk.strides_of(joint, side), axis=1)
 
     return of_foot
 
 
 def _peak_of(curve: str, sign: float) -> OfFoot:
     def of_foot(walk: Walk, side: Side, foot: FootEvents) -> Array:
-        return (sign * over_strides(foot, CURVES[curve].of(walk.signals, side, walk.mass))).max(axis=1)
+        return (sign * walk.strides_of(curve, side)).max(axis=1)
 
     return of_foot
 

@@ -106,8 +106,11 @@ class Walk:
 
     def strides(self, curve: str) -> Array:
         """One of CURVES over the strides of both legs, shape (strides, 101)."""
-        of = CURVES[curve].of
-        return self.each(lambda side, foot: over_strides(foot, of(self.signals, side, self.mass)))
+        return self.each(lambda side, foot: self.strides_of(curve, side))
+
+    def strides_of(self, curve: str, side: Side) -> Array:
+        """One of CURVES over the strides of a leg, shape (strides, 101)."""
+        return over_strides(self.feet[side], CURVES[curve].of(self.signals, side, self.mass, self.facing))
 
 
 @dataclass(frozen=True)

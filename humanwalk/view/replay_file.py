@@ -19,7 +19,7 @@ def write_replay(run: Run, meshcat: Meshcat) -> Path:
         ParameterError: it cannot be written.
     """
     title = f"{run.summary['scenario']}: {run.scenario.description}, {run.summary['duration_s']:g} s"
-    samples = encode_samples(run.signals, run.scenario.subject)
+    samples = encode_samples(run.signals, run.scenario)
     page = run.subfolder(REPLAY)
     write_text(page, static_page(meshcat, printable(title, MAX_TITLE), samples))
     return page

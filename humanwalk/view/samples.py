@@ -13,9 +13,11 @@ from humanwalk.body.subject import Subject
 from humanwalk.measures.curves import ANGLES, JOINTS
 from humanwalk.measures.events import CONTACT_ON_N
 from humanwalk.measures.orientation import sole_rotation
+from humanwalk.measures.path import fore_aft_force, path_directions
 from humanwalk.measures.signals import TIME, matrix
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
+from humanwalk.scenario import Scenario
 
 CHANNELS = (
     "time",
@@ -39,21 +41,23 @@ SOLE_OUTLINE = [
 MAX_MAGNITUDE = 1e9
 
 
-def encode_samples(signals: pa.Table, subject: Subject) -> str:
+def encode_samples(signals: pa.Table, scenario: Scenario) -> str:
     """The channels of a run as text: base64 of 32-bit floats, sample after sample."""
-    time = signals[TIME].to_numpy()
+    time, subject = signals[TIME].to_numpy(), scenario.subject
+    facing = path_directions(signals, scenario.controller.command).facing
     samples = np.full((time.size, len(CHANNELS)), np.nan)
     column = {name: samples[:, index] for index, name in enumerate(CHANNELS)}
     column["time"][:] = time
     for side in SIDES:
         for joint in JOINTS:
-            column[f"{side} {joint}"][:] = ANGLES[joint].of(signals, side, subject.mass)
+            column[f"{side} {joint}"][:] = ANGLES[joint].of(signals, side, subject.mass, facing)
     if f"{SIDES[0].lower()}_foot.force_z_N" in signals.column_names:
         cop = _centers_of_pressure(signals, subject)
         for place, side in enumerate(SIDES):
-            force = matrix(signals, [f"{side.lower()}_foot.force_{axis}_N" for axis in "xz"])
-            column[f"{side} fore-aft"][:], column[f"{side} vertical"][:] = force.T
-            loaded = force[:, 1] >= CONTACT_ON_N
+            vertical = signals[f"{side.lower()}_foot.force_z_N"].to_numpy()
+            column[f"{side} fore-aft"][:] = fore_aft_force(signals, side, facing)
+            column[f"{side} vertical"][:] = vertical
+            loaded = vertical >= CONTACT_ON_N
             column[f"{side} cop x"][loaded] = cop[loaded, place, 0]
             column[f"{side} cop y"][loaded] = cop[loaded, place, 1]
     return base64.b64encode(samples.astype("<f4").tobytes()).decode()

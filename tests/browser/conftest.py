@@ -38,6 +38,6 @@ def short_run(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     outcome = simulate(load_scenario("thesis", {"duration": str(DURATION), "recording.frame_rate": "50"}), meshcat)
     folder = tmp_path_factory.mktemp("runs") / "short"
     folder.mkdir()
-    samples = encode_samples(outcome.signals, outcome.scenario.subject)
+    samples = encode_samples(outcome.signals, outcome.scenario)
     (folder / REPLAY).write_text(static_page(meshcat, "a short walk", samples), encoding="utf-8")
     return outcome.write(folder, "thesis")

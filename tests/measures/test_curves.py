@@ -38,8 +38,8 @@ def posture(pelvis: Rotation = LEVEL, **angles: float) -> pa.Table:
     return pa.table(data)
 
 
-def angle(name: str, signals: pa.Table, side: Side = "Right") -> float:
-    return float(ANGLES[name].of(signals, side, MASS)[0])
+def angle(name: str, signals: pa.Table, side: Side = "Right", facing: complex = 1.0) -> float:
+    return float(ANGLES[name].of(signals, side, MASS, facing)[0])
 
 
 def test_the_pelvic_plane_leans_forward_in_standing() -> None:
@@ -47,6 +47,16 @@ def test_the_pelvic_plane_leans_forward_in_standing() -> None:
     assert angle("pelvis tilt", posture()) == pytest.approx(np.degrees(PELVIC_TILT))
     # The thigh is vertical.
     assert angle("hip", posture()) == pytest.approx(np.degrees(PELVIC_TILT))
+
+
+@pytest.mark.parametrize("heading", [-3.0, -0.4, 0.7, 2.9])
+@pytest.mark.parametrize("name", ANGLES)
+def test_angles_do_not_depend_on_where_the_walk_goes(name: str, heading: float) -> None:
+    pelvis = Rotation.from_euler("ZXY", [0.1, -0.07, 0.2])
+    turned = Rotation.from_euler("Z", heading) * pelvis
+    joints = {"hip_rotation": 8.0, "hip_flexion": 20.0, "ankle": -5.0}
+    there = angle(name, posture(turned, **joints), facing=np.exp(1j * heading))
+    assert there == pytest.approx(angle(name, posture(pelvis, **joints)), abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -270,8 +270,8 @@ def test_events_of_a_record_are_those_of_the_rows_that_count() -> None:
 def test_a_stride_or_stance_with_a_row_that_does_not_count_is_left_out() -> None:
     force = force_of(*STANCES)
     time = PERIOD * np.arange(force.size)
-    whole = foot_events(time, force)
+    whole = foot_events(time, force)  # type: ignore[arg-type]
     for (a, b), row in ((whole.strides[1], whole.strides[1][0] + 1), (whole.strides[0], whole.strides[0][1] - 1)):
-        events = foot_events(time, force, np.arange(time.size) != row)
+        events = foot_events(time, force, np.arange(time.size) != row)  # type: ignore[arg-type]
         assert events.strides == [stride for stride in whole.strides if stride != (a, b)]
         assert events.stances == [(down, off) for down, off in whole.stances if not down <= row < off]

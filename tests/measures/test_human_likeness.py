@@ -126,14 +126,14 @@ def test_score_is_the_mean_of_the_nine_curves(walk: Callable[..., Any], scenario
 def test_power_is_moment_times_speed_of_extension(walk: Callable[..., Any], joint: str) -> None:
     signals = walk(**kinetics_of_people(LEG))
     rate = signals[f"{JOINTS[joint](LEGS['Left'])}.velocity_rad_s"].to_numpy()
-    moment, power = (CURVES[f"{joint} {what}"].of(signals, "Left", MASS) for what in ("moment", "power"))
+    moment, power = (CURVES[f"{joint} {what}"].of(signals, "Left", MASS, 1.0) for what in ("moment", "power"))
     np.testing.assert_allclose(power, moment * -rate, atol=1e-12)
 
 
 def test_moments_are_per_body_mass(walk: Callable[..., Any]) -> None:
     moment = CURVES["hip moment"].of
     signals = walk()
-    np.testing.assert_allclose(2.0 * moment(signals, "Right", 80.0), moment(signals, "Right", 40.0))
+    np.testing.assert_allclose(2.0 * moment(signals, "Right", 80.0, 1.0), moment(signals, "Right", 40.0, 1.0))
 
 
 def test_strides_are_counted_one_by_one(walk: Callable[..., Any]) -> None:

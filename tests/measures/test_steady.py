@@ -36,7 +36,7 @@ def test_a_stop_a_start_and_a_change_of_speed_are_not_steady() -> None:
     scenario = commanded(
         "[{time: 1, forward: 1}, {time: 10, forward: 0}, {time: 14, forward: 1}, {time: 22, forward: 1.5}]"
     )
-    ramp = 1.0 / scenario.controller.command.acceleration  # type: ignore[union-attr]
+    ramp = 1.0 / scenario.controller.command.acceleration
     first = scenario.controller.steady_from(scenario.subject)
     expected = [(first, 10.0), (14.0 + ramp + SETTLING, 22.0), (22.0 + 0.5 * ramp + SETTLING, DURATION)]
     assert steady_parts(scenario) == pytest.approx(np.array(expected), abs=0.03)

@@ -352,7 +352,7 @@ def test_the_gait_cycle_shows_the_mean_of_the_steady_strides_over_the_band_of_hu
     figure = PLOTS["gait_cycle_angles"](run)
     for axes, name in zip(figure.axes, ("hip", "knee", "ankle"), strict=True):
         (shown,) = (line for line in axes.get_lines() if line.get_label().startswith("right"))
-        angle = ANGLES[name].of(run.signals, "Right", run.scenario.subject.mass)
+        angle = ANGLES[name].of(run.signals, "Right", run.scenario.subject.mass, 1.0)
         # Every stride of the made-up walk is the same sine.
         assert np.ptp(shown.get_ydata()) == pytest.approx(np.ptp(angle), rel=0.02)
         np.testing.assert_allclose(shown.get_xdata(), CYCLE)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from humanwalk.body import SIDES, Side
 from humanwalk.gait.normative import CYCLE
-from humanwalk.measures.curves import ANGLES, CURVES, JOINTS, Curve, over_strides
+from humanwalk.measures.curves import ANGLES, CURVES, JOINTS
 from humanwalk.measures.walk_measures import Walk
 from humanwalk.run.folder import Run
 from humanwalk.view.plots.drawing import (
@@ -69,7 +69,7 @@ def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
         curve(axes, CYCLE, band.mean, color=PEOPLE_LINE, linewidth=0.9, linestyle="--")
         level(axes, 0.0)
         for side in SIDES:
-            _mean_and_band(axes, walk, side, shown)
+            _mean_and_band(axes, walk, side, name)
         axes.set_title(name, fontsize=LABEL_SIZE, pad=3)
         axes.set_xticks([0, 50, 100])
         kind = "angle " if name in ANGLES else ""
@@ -79,9 +79,9 @@ def _over_people(run: Run, what: str, names: Sequence[str]) -> Figure | None:
     return figure
 
 
-def _mean_and_band(axes: Axes, walk: Walk, side: Side, shown: Curve) -> None:
-    """Draw a curve over the strides of a leg."""
-    strides = over_strides(walk.feet[side], shown.of(walk.signals, side, walk.mass))
+def _mean_and_band(axes: Axes, walk: Walk, side: Side, name: str) -> None:
+    """Draw one of CURVES over the strides of a leg."""
+    strides = walk.strides_of(name, side)
     mean, sd = strides.mean(axis=0), strides.std(axis=0)
     axes.fill_between(CYCLE, mean - sd, mean + sd, color=SIDE[side], alpha=0.2, linewidth=0)
     text = f"{side.lower()}, {len(strides)} stride{'s' if len(strides) > 1 else ''}"

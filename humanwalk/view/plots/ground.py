@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Literal
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.contact import SOLE_PARTS
 from humanwalk.body.limbs import LEGS
-from humanwalk.measures.events import CONTACT_ON_N, events_of
+from humanwalk.measures.events import CONTACT_ON_N, events_of, stretches
+from humanwalk.measures.orientation import sole_rotation
+from humanwalk.measures.path import fore_aft_force, horizontal, path_directions
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
@@ -31,6 +31,10 @@ from humanwalk.view.plots.drawing import (
     new_figure,
     true_proportions,
 )
+from humanwalk.view.plots.soles import draw_sole
+
+TOES = (1.0, 0.0, 0.0)
+"""Direction from heel to toes in the frame of a sole."""
 
 LAST_SECONDS = 2.0
 """Stretch of `ground_reaction` [s]: three strides of the thesis' walk."""
@@ -44,19 +48,15 @@ def ground_reaction(run: Run) -> Figure | None:
     if time.size < 2:
         return None
     weight = run.scenario.subject.mass * GRAVITY
+    facing = path_directions(run.signals, run.scenario.controller.command).facing
     figure = new_figure(
         f"Ground reaction on the feet, last {time[-1] - time[0]:.3g} s", height=4.0, rows=2, sharex=True
     )
     vertical, fore_aft = figure.axes
     for side in SIDES:
-        for axes, axis in ((vertical, "z"), (fore_aft, "x")):
-            curve(
-                axes,
-                time,
-                run[f"{side.lower()}_foot.force_{axis}"][rows],
-                color=SIDE[side],
-                label=f"{side.lower()} foot",
-            )
+        forces = (run[f"{side.lower()}_foot.force_z"], fore_aft_force(run.signals, side, facing))
+        for axes, force in zip((vertical, fore_aft), forces, strict=True):
+            curve(axes, time, force[rows], color=SIDE[side], label=f"{side.lower()} foot")
     level(vertical, weight, f"body weight, {weight:.0f} N")
     level(fore_aft, 0.0)
     label(vertical, "", "vertical force [N]")
@@ -135,14 +135,8 @@ def draw_faces(axes: Axes, faces: Sequence[Face]) -> None:
 
 def _footprints(run: Run, axes: Axes, side: Side, rows: Mask) -> None:
     """Draw the outline of the sole at the middle of each contact."""
-    contact = events_of(run.signals, side).contact & rows
-    edges = np.flatnonzero(np.diff(contact.astype(int), prepend=0, append=0))
-    x, y = (run[f"{side.lower()}_sole.{axis}"] for axis in "xy")
-    length, breadth, _ = run.scenario.subject.skeleton.size(LEGS[side].hindfoot)
-    for begin, end in edges.reshape(-1, 2):
+    place, toes = horizontal(run.signals, f"{side.lower()}_sole"), sole_rotation(run.signals, side).apply(TOES)
+    size = run.scenario.subject.skeleton.size(LEGS[side].hindfoot)
+    for begin, end in stretches(events_of(run.signals, side).contact & rows):
         middle = (begin + end) // 2
-        for part in SOLE_PARTS:
-            back, front, width = length * part.x[0], length * part.x[1], breadth * part.width
-            corner = (x[middle] + back, y[middle] - width / 2)
-            sole = Rectangle(corner, front - back, width, facecolor=(*SIDE[side], 0.13), edgecolor="none")
-            axes.add_patch(sole)
+        draw_sole(axes, size, side, place[middle], complex(*toes[middle, :2]))

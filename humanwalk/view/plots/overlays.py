@@ -3,14 +3,14 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from humanwalk.body import SIDES, Side
+from humanwalk.body import Side
 from humanwalk.gait.normative import CYCLE
-from humanwalk.measures.curves import ANGLES, Curve, over_strides
-from humanwalk.measures.events import events_of
+from humanwalk.measures.curves import ANGLES, JOINTS, over_strides
+from humanwalk.measures.events import FootEvents
+from humanwalk.measures.walk_measures import Walk
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
@@ -18,8 +18,6 @@ from humanwalk.view.plots.drawing import LABEL_SIZE, TICK_SIZE, curve, label, le
 
 RUN_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#999999")
 """Distinct in color blindness: Okabe and Ito (2008)."""
-
-JOINTS = ("hip", "knee", "ankle")
 
 Overlay = Callable[[Sequence[Run], Sequence[str]], Figure | None]
 """Function of runs and their names that draws a figure; None if no run has data for it."""
@@ -31,8 +29,8 @@ def gait_cycle_angles(runs: Sequence[Run], names: Sequence[str]) -> Figure | Non
     for axes, joint in zip(figure.axes, JOINTS, strict=True):
         angle = ANGLES[joint]
         level(axes, 0.0)
-        for run, name, color in _each(runs, names):
-            _mean_curve(axes, run, partial(_of_leg, run, angle), name, color)
+        for walk, name, color in _walks(runs, names):
+            _mean_curve(axes, walk.strides(joint), name, color)
         axes.set_title(joint, fontsize=LABEL_SIZE, pad=3)
         label(axes, "gait cycle [%]", f"{angle.positive} [deg]")
     return _with_legend(figure)
@@ -42,9 +40,8 @@ def ground_reaction(runs: Sequence[Run], names: Sequence[str]) -> Figure | None:
     """Vertical ground reaction force over the gait cycle, the mean of all steady strides of both legs [BW]."""
     figure = new_figure("Vertical ground reaction force over the gait cycle, mean of both legs", 3.0)
     (axes,) = figure.axes
-    for run, name, color in _each(runs, names):
-        weight = run.scenario.subject.mass * GRAVITY
-        _mean_curve(axes, run, lambda side, run=run, w=weight: run[f"{side.lower()}_foot.force_z"] / w, name, color)  # type: ignore[misc]
+    for walk, name, color in _walks(runs, names):
+        _mean_curve(axes, walk.each(partial(_vertical_force, walk)), name, color)
     label(axes, "gait cycle [%]", "force [body weight]")
     return _with_legend(figure)
 
@@ -67,10 +64,6 @@ OVERLAYS: dict[str, Overlay] = {
 """Figures of several runs by name."""
 
 
-def _of_leg(run: Run, angle: Curve, side: Side) -> Array:
-    return angle.of(run.signals, side, run.scenario.subject.mass)
-
-
 def _each(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Run, str, str]]:
     """Each run with its label and color."""
     # A legend of matplotlib leaves labels out that begin with an underscore.
@@ -78,12 +71,22 @@ def _each(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Run, str, str
     return list(zip(runs, labels, RUN_COLORS[: len(runs)], strict=True))
 
 
-def _mean_curve(axes: Axes, run: Run, values: Callable[[Side], Array], name: str, color: str) -> None:
-    """Draw the mean over the steady strides of both legs, if there are strides."""
-    if not run.scenario.controller.physics:
-        return
-    begin = run.scenario.controller.steady_from(run.scenario.subject)
-    strides = np.vstack([over_strides(events_of(run.signals, side, begin), values(side)) for side in SIDES])
+def _walks(runs: Sequence[Run], names: Sequence[str]) -> list[tuple[Walk, str, str]]:
+    """The steady part of each run with physics, with its label and color."""
+    return [
+        (Walk.of(run.signals, run.scenario), name, color)
+        for run, name, color in _each(runs, names)
+        if run.scenario.controller.physics
+    ]
+
+
+def _vertical_force(walk: Walk, side: Side, foot: FootEvents) -> Array:
+    """Vertical ground reaction force over the strides of a leg [BW], shape (strides, 101)."""
+    return over_strides(foot, walk.signals[f"{side.lower()}_foot.force_z_N"].to_numpy() / (walk.mass * GRAVITY))
+
+
+def _mean_curve(axes: Axes, strides: Array, name: str, color: str) -> None:
+    """Draw the mean over strides, shape (strides, 101), if there are any."""
     if len(strides):
         curve(axes, CYCLE, strides.mean(axis=0), color=color, label=name)
 

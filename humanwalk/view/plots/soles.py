@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon
 
 from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SOLE_PARTS
@@ -28,7 +28,7 @@ def cop_under_soles(run: Run) -> Figure | None:
     figure = new_figure("Center of pressure under the soles, every stride in the frame of its footprint", 4.4, 2, 2)
     for column, side in enumerate(SIDES):
         under, over = figure.axes[column], figure.axes[2 + column]
-        _sole(under, run.scenario.subject.skeleton.size(LEGS[side].hindfoot), side)
+        draw_sole(under, run.scenario.subject.skeleton.size(LEGS[side].hindfoot), side, scale=100.0)
         for path in filter(len, paths[side]):
             cycle, forward, left = path.T * np.array([[1.0], [100.0], [100.0]])
             rolling = (cycle >= ROLL[0]) & (cycle <= ROLL[1])
@@ -49,11 +49,24 @@ def cop_under_soles(run: Run) -> Figure | None:
     return figure
 
 
-def _sole(axes: Axes, size: Vector3, side: Side) -> None:
-    """Draw the outline of the sole, toes to the right; its size is relative to the reference human's."""
+def draw_sole(
+    axes: Axes, size: Vector3, side: Side, place: complex = 0.0, direction: complex = 1.0, scale: float = 1.0
+) -> None:
+    """Draw the outline of a sole.
+
+    Args:
+        axes: Where it is drawn.
+        size: Of the foot relative to the reference human's.
+        side: Of the body.
+        place: Of the point under the ankle [m].
+        direction: Of the toes, of any length but 0.
+        scale: Units of the axes per meter.
+    """
     along, across, _ = size
     for part in SOLE_PARTS:
-        back, front, width = 100.0 * along * part.x[0], 100.0 * along * part.x[1], 100.0 * across * part.width
+        back, front, half = along * part.x[0], along * part.x[1], 0.5 * across * part.width
+        corners = np.array([back - 1j * half, front - 1j * half, front + 1j * half, back + 1j * half])
+        outline = scale * (place + direction / abs(direction) * corners)
         axes.add_patch(
-            Rectangle((back, -width / 2), front - back, width, facecolor=(*SIDE[side], 0.13), edgecolor="none")
+            Polygon(np.column_stack((outline.real, outline.imag)), facecolor=(*SIDE[side], 0.13), edgecolor="none")
         )
