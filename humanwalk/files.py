@@ -168,7 +168,7 @@ def write_set(files: Mapping[Path, Callable[[Path], object]]) -> None:
 def _filled(path: Path, write: Callable[[Path], object]) -> Iterator[Path]:
     """A file beside `path` that `write` has filled; removed at the end unless it was moved."""
     with file_errors(path, WRITABLE):
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=".humanwalk-", suffix=path.suffix, dir=path.parent)
         os.close(handle)
     beside = Path(name)
     try:

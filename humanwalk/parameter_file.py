@@ -29,6 +29,9 @@ from humanwalk.yaml_text import MAX_DEPTH, line_of, read_yaml, shown, yaml_text
 MAX_FILE_SIZE = 100_000
 """Size of the largest file [bytes]; a complete scenario has five thousand, a parser may need far more than a file."""
 
+MAX_KEPT_SIZE = 1_000_000
+"""Size of the largest file in a folder of ours [bytes]: it has every field written out, the user's only some."""
+
 MAX_ENTRIES = 1000
 """Length of the longest list."""
 
@@ -53,13 +56,13 @@ def located(text: str, name: str, replaced: Collection[str] = ()) -> Iterator[No
         raise ParameterError(f"{name}, line {line}: {error}") from None
 
 
-def read_fields(path: Path) -> str:
-    """The text of a file that somebody wrote to be used: a scenario, study or tuning.
+def read_fields(path: Path, limit: int = MAX_FILE_SIZE) -> str:
+    """The text of a file that somebody wrote to be used: a scenario, study or tuning, of up to `limit` bytes.
 
     Raises:
         ParameterError: it cannot be read, or has no line but comments.
     """
-    text = read_text(path, MAX_FILE_SIZE)
+    text = read_text(path, limit)
     if all(line.partition("#")[0].strip() in ("", "---") for line in text.splitlines()):
         raise ParameterError(
             f"{printable(path)}: empty; allowed: one field or more, or {{}} for the defaults; write `field: value`"

@@ -124,7 +124,7 @@ class Scenario:
         """What is allowed but may surprise, one line each: speeds that were not tested, and pushes after the end."""
         late = [push.time for push in self.pushes.given if push.time >= self.duration]
         after = [f"pushes.given: the push at {time:g} s comes after the end at {self.duration:g} s" for time in late]
-        return (*self.controller.untested, *after)
+        return tuple(dict.fromkeys((*self.controller.untested, *after)))
 
     def __repr__(self) -> str:
         """Description, duration and choices; `dump_scenario` has every field."""

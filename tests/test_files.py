@@ -75,6 +75,12 @@ def test_a_failing_writer_of_a_set_leaves_the_old_set(tmp_path: Path) -> None:
     assert sorted(tmp_path.iterdir()) == paths
 
 
+def test_a_name_may_be_as_long_as_the_system_allows(tmp_path: Path) -> None:
+    path = tmp_path / f"{'a' * 250}.json"
+    write_whole(path, lambda beside: beside.write_text("x"))
+    assert path.read_text() == "x"
+
+
 @pytest.mark.parametrize("error", [RuntimeError("no"), KeyboardInterrupt(), ValueError("no")])
 def test_failing_writer_leaves_the_old_file_and_no_other(tmp_path: Path, error: Any) -> None:
     path = tmp_path / "walk.txt"

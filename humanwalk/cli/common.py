@@ -6,7 +6,16 @@ from typing import IO, Annotated, Any, cast
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    Task,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
 
 from humanwalk.cli.streams import BestEffort
 from humanwalk.quantity import ParameterError, printable
@@ -116,9 +125,27 @@ def require_look(look: str) -> None:
         raise ParameterError(f"--look {look}: unknown; allowed: {', '.join(LOOKS)}; choose one of them")
 
 
+class DescriptionColumn(TextColumn):
+    """What a task does; it may have names from others, see `SafeConsole`."""
+
+    def __init__(self) -> None:
+        """Make a column."""
+        super().__init__("{task.description}", markup=False)
+
+    def render(self, task: Task) -> Text:
+        """Return the description without control characters."""
+        return Text(printable(task.description))
+
+
+def simulated_progress(console: Console) -> Progress:
+    """A progress bar of simulated time [s], with remaining time."""
+    simulated = "{task.completed:.1f} of {task.total:g} s"
+    return Progress(DescriptionColumn(), BarColumn(), simulated, TimeRemainingColumn(), console=console, transient=True)
+
+
 def counted_progress(unit: str, estimate_period: float = 30.0) -> Progress:
     """A progress bar on terminals, with elapsed time, and remaining time by the last `estimate_period` [s]."""
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), f"{unit},")
+    columns = (DescriptionColumn(), BarColumn(), MofNCompleteColumn(), f"{unit},")
     times = (TimeElapsedColumn(), "elapsed,", TimeRemainingColumn(), "remaining")
     return Progress(
         *columns,

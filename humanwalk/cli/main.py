@@ -20,7 +20,7 @@ from humanwalk.cli import (
     tuning_commands,
 )
 from humanwalk.cli.common import BAD_INPUT, MAX_MESSAGE, app, console
-from humanwalk.cli.streams import discard, open_missing, signals_as_exits
+from humanwalk.cli.streams import discard, encode_all, open_missing, signals_as_exits
 from humanwalk.quantity import ParameterError, printable
 
 __all__ = [
@@ -41,6 +41,7 @@ __all__ = [
 def main() -> None:
     """Entry point of the program."""
     open_missing()
+    encode_all(sys.stdout)
     with signals_as_exits():
         run_command()
 

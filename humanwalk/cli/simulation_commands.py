@@ -16,6 +16,7 @@ from humanwalk.cli.common import (
     app,
     console,
     require_look,
+    simulated_progress,
     stdout,
 )
 from humanwalk.measures import ends
@@ -107,8 +108,9 @@ def reproduce(run: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> 
 
     opened = Run.open(run)
     try:
-        with console.status(f"simulating {opened.time[-1]:g} s again"):
-            result = repeat(opened)
+        with simulated_progress(console) as progress:
+            task = progress.add_task(f"{run} again", total=float(opened.time[-1]))
+            result = repeat(opened, lambda time: progress.update(task, completed=time))
     except KeyboardInterrupt:
         console.print("interrupted; no verdict")
         raise typer.Exit(INTERRUPTED) from None

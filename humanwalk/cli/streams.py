@@ -1,6 +1,7 @@
 """Standard streams that fail: a full disk, a closed terminal, a reader that has stopped."""
 
 import _weakrefset
+import io
 import logging
 import os
 import signal
@@ -34,6 +35,15 @@ class BestEffort:
             action()
         except (OSError, ValueError):
             discard(self._stream)
+
+
+def encode_all(stream: object) -> None:
+    """Let a text stream take every character: a file or pipe has UTF-8, a terminal escapes what it cannot show."""
+    if isinstance(stream, io.TextIOWrapper):
+        if stream.isatty():
+            stream.reconfigure(errors="backslashreplace")
+        else:
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
 
 
 def discard(stream: IO[str]) -> None:

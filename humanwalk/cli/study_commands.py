@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from humanwalk.cli.common import INTERRUPTED, STUDY, app, console, counted_progress, print_warnings, stdout
+from humanwalk.cli.common import BAD_INPUT, INTERRUPTED, STUDY, app, console, counted_progress, print_warnings, stdout
 from humanwalk.files import require_replaceable
 from humanwalk.quantity import ParameterError
 
@@ -62,7 +62,9 @@ def run(
     """Run a study: simulate its points on all cores, and write a row of the table as each ends. Resumes."""
     from humanwalk.run.monitor import caught_signals
     from humanwalk.study.execute import Shard, run_study
+    from humanwalk.study.row import has_result
     from humanwalk.study.study import load_study
+    from humanwalk.study.table import ROW
 
     part = Shard.parse(shard)
     loaded = load_study(study)
@@ -88,6 +90,11 @@ def run(
     if table.num_rows < part.size(loaded):
         console.print("interrupted; the same command resumes")
         raise typer.Exit(INTERRUPTED)
+    failures = [row for row in table.select([ROW, "end"]).to_pylist() if not has_result(row["end"])]
+    if failures:
+        first = failures[0]
+        console.print(f"{len(failures)} without a result; the first, row {first[ROW]}: {first['end']}", soft_wrap=True)
+        raise typer.Exit(BAD_INPUT)
 
 
 @study_app.command(epilog="Example: humanwalk study join studies/part1 studies/part2 -o studies/all")

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Column, Table
 
 from humanwalk.body.subject import Subject
 from humanwalk.choices.style import RecordedStyle
-from humanwalk.cli.common import print_warnings
+from humanwalk.cli.common import print_warnings, simulated_progress
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.motion.motion_table import read_motion_table
 from humanwalk.quantity import ParameterError, numbers_of, printable
@@ -231,8 +230,7 @@ def _simulate_and_write(
         with suppress(ParameterError):
             so_far.write(path, name)
 
-    columns = ("{task.description}", BarColumn(), "{task.completed:.1f} of {task.total:g} s", TimeRemainingColumn())
-    progress = Progress(*columns, console=console, transient=True)
+    progress = simulated_progress(console)
     task = progress.add_task(name, total=scenario.duration)
 
     def show(time: float) -> None:

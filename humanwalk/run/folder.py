@@ -33,7 +33,7 @@ from humanwalk.measures.summary import Summary
 from humanwalk.measures.summary_rows import summary_rows, summary_title
 from humanwalk.notebook import html_table
 from humanwalk.numerics import Array
-from humanwalk.parameter_file import read_fields
+from humanwalk.parameter_file import MAX_KEPT_SIZE, read_fields
 from humanwalk.quantity import ParameterError, file_paths, printable, replace_file_paths
 from humanwalk.run.provenance import MAX_FOLLOWED_BYTES, provenance, scenario_hash
 from humanwalk.run.stored import MAX_ROWS, RunSummary, read_signals, read_summary
@@ -98,7 +98,7 @@ class Run:
             ParameterError: it is no scenario, reads a file outside the run folder, or the summary cannot be read.
         """
         path = self.path / SCENARIO
-        scenario = parse_scenario(read_fields(path), name=printable(path), folder=self.path)
+        scenario = parse_scenario(read_fields(path, MAX_KEPT_SIZE), name=printable(path), folder=self.path)
         for file in file_paths(scenario).values():
             require_inside(self.path, Path(file))
         if scenario_hash(scenario) != self.summary["provenance"]["scenario_sha256"]:

@@ -153,7 +153,7 @@ class SlurmParameters:
         """Raise ParameterError for an amount of memory that is none."""
         try:
             enough = parse_bytes(self.memory) >= MIN_MEMORY
-        except ValueError:
+        except (ValueError, OverflowError):
             enough = False
         if not enough:
             raise ParameterError(

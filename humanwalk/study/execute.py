@@ -22,7 +22,7 @@ import pyarrow as pa
 from humanwalk.extras import missing_package
 from humanwalk.files import require_inside
 from humanwalk.quantity import ParameterError, printable, require_kind
-from humanwalk.study.row import Job, Row, simulate_row
+from humanwalk.study.row import ERROR, KILLED, REFUSED, Job, Row, failed, simulate_row
 from humanwalk.study.study import Study
 from humanwalk.study.table import RUNS, Journal, open_journal, read_table
 
@@ -115,11 +115,6 @@ def run_jobs[J: Indexed](
             future.release()
 
 
-def failed(end: str) -> Row:
-    """The row of a run that has no measures."""
-    return {"end": printable(end, 1000), "survived": False}
-
-
 def _room(client: Client) -> int:
     """Number of jobs that may be at the cluster: each worker has one, and the next ones are at the scheduler."""
     if client.status != "running":
@@ -154,10 +149,10 @@ def _rows_of(client: Client, futures: list[Future[Any]]) -> dict[str, Row]:
 
 def _failure(error: BaseException) -> Row:
     if isinstance(error, KilledWorker):
-        return failed(f"killed its worker {error.allowed_failures + 1} times")
+        return failed(f"{KILLED}{error.allowed_failures + 1} times")
     if isinstance(error, ParameterError):
-        return failed(f"refused: {error}")
-    return failed(f"error: {type(error).__name__}: {error}")
+        return failed(f"{REFUSED}{error}")
+    return failed(f"{ERROR}{type(error).__name__}: {error}")
 
 
 def _lost(client: Client, error: Exception) -> ParameterError:

@@ -15,7 +15,7 @@ import pyarrow as pa
 from humanwalk.measures.signals import UNIT, unit_of
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import ParameterError, near_names, numbers_of, printable
-from humanwalk.study.row import run_columns
+from humanwalk.study.row import has_result, run_columns
 from humanwalk.study.statistics import FactorArray, factor_array, is_numeric
 from humanwalk.study.study import Study
 from humanwalk.study.table import ROW, read_study, read_table
@@ -51,7 +51,7 @@ class Results:
     Attributes:
         name: of the study.
         study: what was simulated.
-        table: the finished rows in the order of the points, at least one.
+        table: the rows with a result in the order of the points, at least one.
     """
 
     name: str
@@ -66,6 +66,7 @@ class Results:
             ParameterError: the folder holds no study, its table was changed, or no run has finished.
         """
         study, table = read_study(folder), read_table(folder)
+        table = table.filter(pa.array([has_result(end) for end in table["end"].to_pylist()], pa.bool_()))
         if not table.num_rows:
             raise ParameterError(f"{printable(folder)}: no run has finished; allowed: one or more; run the study first")
         return Results(printable(folder.resolve().name), study, table)

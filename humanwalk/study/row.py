@@ -149,3 +149,17 @@ def _columns(kind: Any, name: str) -> list[tuple[str, type]]:
     else:
         return _columns(options[0], name) if options else [(name, kind)]
     return [column for part, hint in parts for column in _columns(hint, f"{name}.{part}".strip("."))]
+
+
+REFUSED, ERROR, KILLED = "refused: ", "error: ", "killed its worker "
+"""Beginnings of the ends of rows without a result."""
+
+
+def failed(end: str) -> Row:
+    """The row of a run that has no measures."""
+    return {"end": printable(end, 1000), "survived": False}
+
+
+def has_result(end: str) -> bool:
+    """Whether a run with this end was simulated; a point that was refused is no fall."""
+    return not end.startswith((REFUSED, ERROR, KILLED))

@@ -22,7 +22,7 @@ from typing import Any, Literal
 
 from humanwalk.parameter_file import anchor_paths, build, dump, located, plain, read_fields, rebuild
 from humanwalk.parameter_override import replace_value
-from humanwalk.quantity import ParameterError, choice, choices_by_name, printable
+from humanwalk.quantity import ParameterError, choice, choices_by_name, is_within, printable
 from humanwalk.scenario import Scenario, load_scenario, shipped_scenarios
 from humanwalk.shipped_files import named_file, shipped_files
 from humanwalk.study.design import DESIGNS, Design, FullFactorial, Point
@@ -90,10 +90,21 @@ class Study:
         return value
 
     def overrides(self, point: Point) -> dict[str, Any]:
-        """Values of scenario fields at a point, by dotted name."""
+        """Values of scenario fields at a point, by dotted name.
+
+        Raises:
+            ParameterError: a factor replaces what one before it has set; the table would name a value that is not used.
+        """
         values: dict[str, Any] = {}
         for name, level in point.items():
-            values |= self.factors.get(name, _FIELD).overrides(name, level)
+            own = self.factors.get(name, _FIELD).overrides(name, level)
+            lost = next((earlier for earlier in values for field in own if is_within(earlier, field)), None)
+            if lost is not None:
+                raise ParameterError(
+                    f"factors: {name} replaces {lost}, which a factor before it sets; allowed: a field of one factor, "
+                    "or a group first and then a field in it; change the order, or remove one"
+                )
+            values |= own
         return values
 
     def scenario_at(self, point: Point) -> Scenario:
@@ -127,7 +138,7 @@ class Study:
         Raises:
             ParameterError: as `require_valid`.
         """
-        counts = Counter(line for scenario in self.scenarios() for line in scenario.warnings)
+        counts = Counter(line for scenario in self.scenarios() for line in dict.fromkeys(scenario.warnings))
         return tuple(f"{line} ({count} of {len(self.points)} points)" for line, count in counts.items())
 
 

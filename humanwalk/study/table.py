@@ -30,12 +30,13 @@ from humanwalk.files import (
     write_text,
     write_whole,
 )
+from humanwalk.parameter_file import MAX_KEPT_SIZE, read_fields
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.study import journal
 from humanwalk.study.design import MAX_CSV_BYTES, Rows
 from humanwalk.study.factors import Variants
 from humanwalk.study.row import Row, run_columns
-from humanwalk.study.study import Study, dump_study, load_study
+from humanwalk.study.study import Study, dump_study, parse_study
 
 STUDY = "study.yaml"
 POINTS = "points.csv"
@@ -170,15 +171,17 @@ def join(parts: Sequence[Path], folder: Path) -> pa.Table:
     Raises:
         ParameterError: a part is of another study, or the folder cannot be used.
     """
-    study = read_study(parts[0])
+    study, tables = read_study(parts[0]), []
+    for part in parts:
+        if not same_study(read_study(part), study):
+            raise ParameterError(
+                f"{printable(part)}: holds another study than {printable(parts[0])}; allowed: parts of one study; "
+                "leave it out"
+            )
+        tables.append(read_table(part))
     with open_journal(folder, study) as whole:
-        for part in parts:
-            if not same_study(read_study(part), study):
-                raise ParameterError(
-                    f"{printable(part)}: holds another study than {printable(parts[0])}; allowed: parts of one study; "
-                    "leave it out"
-                )
-            for row in read_table(part).to_pylist():
+        for table in tables:
+            for row in table.to_pylist():
                 if row[ROW] not in whole.done:
                     whole.append(row[ROW], row)
         whole.finish()
@@ -196,7 +199,8 @@ def read_study(folder: Path | str) -> Study:
     Raises:
         ParameterError: the folder holds no study, or one that cannot be read.
     """
-    study = load_study(file_of(Path(folder), STUDY, "study", "humanwalk study"))
+    path = file_of(Path(folder), STUDY, "study", "humanwalk study")
+    study = parse_study(read_fields(path, MAX_KEPT_SIZE), path.name, path.parent)
     if isinstance(study.design, Rows):
         require_inside(Path(folder), Path(study.design.file))
     return study

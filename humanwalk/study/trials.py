@@ -18,6 +18,7 @@ import pyarrow as pa
 
 from humanwalk.files import WRITABLE, file_errors, file_of, locked, make_folder, require_inside, write_text
 from humanwalk.measures.ends import COMPLETED
+from humanwalk.parameter_file import MAX_KEPT_SIZE, read_fields
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.scenario import dump_scenario
 from humanwalk.study import journal
@@ -25,7 +26,7 @@ from humanwalk.study.objectives import Score, measured, score
 from humanwalk.study.results import MAX_MAGNITUDE
 from humanwalk.study.row import Row
 from humanwalk.study.trial import RUNS
-from humanwalk.study.tuning import MAX_TRIALS, Tuning, dump_tuning, load_tuning
+from humanwalk.study.tuning import MAX_TRIALS, Tuning, dump_tuning, parse_tuning
 
 TUNING = "tuning.yaml"
 TRIALS = "trials.csv"
@@ -148,7 +149,8 @@ def read_tuning(folder: Path) -> Tuning:
     Raises:
         ParameterError: the folder holds no tuning, or one that cannot be read.
     """
-    return load_tuning(file_of(folder, TUNING, "tuning", "humanwalk tune"))
+    path = file_of(folder, TUNING, "tuning", "humanwalk tune")
+    return parse_tuning(read_fields(path, MAX_KEPT_SIZE), path.name, path.parent)
 
 
 def read_trials(folder: Path) -> tuple[Tuning, list[Row]]:

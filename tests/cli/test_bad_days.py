@@ -29,6 +29,14 @@ HEAR = "import signal; signal.signal(signal.SIGHUP, signal.SIG_DFL); "
 """For tests that are started by nohup, whose children ignore SIGHUP."""
 
 
+def test_output_takes_every_character_in_every_locale(tmp_path: Path) -> None:
+    (tmp_path / "uni.yaml").write_text("description: Höhe → 10 cm\n", encoding="utf-8")
+    arguments = [sys.executable, "-c", WALK, "scenarios", "--show", "uni.yaml"]
+    ascii_only = os.environ | {"PYTHONIOENCODING": "ascii"}
+    shown = subprocess.run(arguments, cwd=tmp_path, env=ascii_only, capture_output=True, check=True)
+    assert "Höhe → 10 cm" in shown.stdout.decode()
+
+
 def start(folder: Path, *more: str, before: str = "", **environment: Any) -> subprocess.Popen[str]:
     """The command line in a process of its own, walking into `folder`/run."""
     return subprocess.Popen(

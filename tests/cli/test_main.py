@@ -612,6 +612,17 @@ def test_a_study_prints_the_first_warnings_of_its_points(humanwalk: Any, tmp_pat
     assert warnings[5:] == ["warning: and 1 more"]
 
 
+def test_a_point_that_only_its_simulation_refuses_is_no_fall(humanwalk: Any, tmp_path: Path) -> None:
+    lift = "controller.thesis.gait.path.step_height: [0.1, 0.15]"
+    (tmp_path / "lifts.yaml").write_text(f"scenario: thesis\nset: {{duration: 0.02}}\nfactors: {{{lift}}}\n")
+    code, _, err = humanwalk("study", "lifts.yaml", "-o", "lifts", "--workers", "1")
+    assert code == 2
+    assert "1 without a result; the first, row 0: refused: controller.thesis.gait" in err
+    code, out, _ = humanwalk("study", "show", "lifts")
+    assert code == 0
+    assert "1 of 1" in out
+
+
 def test_a_tuning_that_cannot_be_used_is_refused(refusal: Any, tmp_path: Path) -> None:
     assert "no such tuning or file; allowed: cost_of_transport, likeness, pushes_60" in refusal(
         "tune", "cheap", "-o", "x"

@@ -50,6 +50,7 @@ def test_slurm_jobs_are_the_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         ("cores: 0", "cores: 0 is out of range"),
         ("core: 1", "did you mean cores"),
         ("memory: much", "memory: much is not enough"),
+        ("memory: 1e999GB", "memory: 1e999GB is not enough"),
     ],
 )
 def test_slurm_files_that_cannot_be_used_are_refused_in_one_line(tmp_path: Path, text: str, match: Any) -> None:

@@ -133,6 +133,14 @@ def test_files_that_are_no_study_are_refused_in_one_line(text: str, match: str) 
         ("factors: {pushes.given.1.time: [1]}", "pushes.given.1: no such entry; allowed: 0 to 0"),
         ("factors: {controller.balanced.control_period: [0.006]}", "controller is 'thesis'"),
         ("set: {duration: -1}", r"^duration: -1 is out of range"),
+        (
+            "factors: {subject.mass: [60, 80], subject: [{sex: female}]}",
+            r"point \(subject.mass: 60, .*: factors: subject replaces subject.mass, which a factor before it sets",
+        ),
+        (
+            "factors: {subject.mass: [60, 80], v: {variants: {heavy: {subject.mass: 90}}}}",
+            "factors: v replaces subject.mass, which a factor before it sets; allowed: .* remove one",
+        ),
         ("set: {duration.x: -1}", r"duration is 15\.0"),
         ("factors: {seed: {uniform: {low: 0, high: 1}}}", "latin_hypercube or sobol"),
         ("factors: {seed: {range: {low: 0, high: 1}}}", "0.0 is not a whole number"),
@@ -145,6 +153,14 @@ def test_points_that_cannot_be_simulated_are_refused_with_their_values(text: str
     assert str(raised.value).isprintable()
 
 
+def test_a_factor_may_replace_a_field_of_a_group_that_one_before_it_sets() -> None:
+    study = parse_study("factors: {subject: [{sex: female}], subject.mass: [60, 80]}")
+    assert [(scenario.subject.sex, scenario.subject.mass) for scenario in study.scenarios()] == [
+        ("female", 60.0),
+        ("female", 80.0),
+    ]
+
+
 def test_warnings_of_the_scenarios_are_counted() -> None:
     push = "pushes.given: [{time: 1.0}]"
     study = parse_study(f"scenario: stand\nset: {{{push}}}\nfactors: {{duration: [0.5, 1.0, 1.5]}}\n")
@@ -154,6 +170,8 @@ def test_warnings_of_the_scenarios_are_counted() -> None:
     (both,) = parse_study(f"scenario: stand\nset: {{{push}, duration: 0.5}}\nfactors: {{seed: [0, 1]}}\n").warnings
     assert both.endswith("(2 of 2 points)")
     assert parse_study("scenario: stand\n").warnings == ()
+    twice = "scenario: stand\nset: {duration: 0.5, pushes.given: [{time: 1.0}, {time: 1.0}]}\n"
+    assert parse_study(twice).warnings[0].endswith("(1 of 1 points)")
 
 
 def test_unknown_study_is_refused() -> None:

@@ -10,11 +10,24 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from humanwalk.parameter_file import MAX_FILE_SIZE
 from humanwalk.quantity import ParameterError
 from humanwalk.study.design import OneAtATime
 from humanwalk.study.factors import Values
 from humanwalk.study.study import Study, parse_study
-from humanwalk.study.table import PARQUET, POINTS, ROW, STUDY, TABLE, join, open_journal, read_table, table_columns
+from humanwalk.study.table import (
+    PARQUET,
+    POINTS,
+    ROW,
+    STUDY,
+    TABLE,
+    join,
+    open_journal,
+    read_study,
+    read_table,
+    same_study,
+    table_columns,
+)
 
 SIX = parse_study("factors: {duration: [1, 2, 3], contact: [point, {hydroelastic: {}}]}")
 ROWS: list[dict[str, Any]] = [
@@ -174,6 +187,18 @@ def test_parts_of_a_study_are_joined(tmp_path: Path) -> None:
     fill(tmp_path / "other", Study(), [])
     with pytest.raises(ParameterError, match="holds another study"):
         join([*parts, tmp_path / "other"], tmp_path / "out")
+    for bad in ("other", "missing"):
+        with pytest.raises(ParameterError):
+            join([*parts, tmp_path / bad], tmp_path / "new")
+        assert not (tmp_path / "new").exists()
+
+
+def test_a_study_with_every_field_written_out_may_be_larger_than_a_file_of_the_user(tmp_path: Path) -> None:
+    pushes = ", ".join("{time: 1.0}" for _ in range(1000))
+    study = parse_study(f"scenario: stand\nset: {{pushes.given: [{pushes}]}}\nfactors: {{seed: [0, 1]}}\n")
+    fill(tmp_path / "large", study, [0])
+    assert (tmp_path / "large" / STUDY).stat().st_size > MAX_FILE_SIZE
+    assert same_study(read_study(tmp_path / "large"), study)
 
 
 def test_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
