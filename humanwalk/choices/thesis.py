@@ -25,7 +25,7 @@ from humanwalk.gait.foot_cycle import FootPathParameters
 from humanwalk.gait.speed_ramp import SpeedRamp
 from humanwalk.gait.walking_gait import WalkingGait
 from humanwalk.numerics import Array
-from humanwalk.quantity import GRAVITY, quantity
+from humanwalk.quantity import GRAVITY, ParameterError, quantity
 from humanwalk.sides import SIDES
 from humanwalk.systems.arm_swing_source import ArmSwingSource
 from humanwalk.systems.foot_force_balance import FootForceBalance
@@ -92,6 +92,16 @@ class ThesisController:
 
     physics = True
     command = followed_style = None
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a lag of a balance level that its time steps cannot follow: it would diverge."""
+        levels = {"foot_force": self.balance.foot_force, "upper_body": self.balance.upper_body}
+        for name, level in levels.items():
+            if level.time_constant < self.control_period:
+                raise ParameterError(
+                    f"balance.{name}.time_constant: {level.time_constant:g} is too short; allowed: from "
+                    f"control_period, {self.control_period:g} s, on; raise it, or lower control_period"
+                )
 
     @property
     def commanded_speed(self) -> float:

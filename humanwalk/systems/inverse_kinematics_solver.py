@@ -74,7 +74,7 @@ class InverseKinematicsSolver(LeafSystem):
             (LegKinematics(plant, PELVIS, leg.sole, leg.chain), np.array([names.index(name) for name in leg.chain]))
             for leg in legs
         ]
-        start = np.zeros(2 * n)
+        self._start = start = np.zeros(2 * n)
         for name, angle in (start_posture or {}).items():
             start[names.index(name)] = angle
         self._first_bend = FIRST_KNEE_BEND * np.isin(names, [leg.knee for leg in legs])
@@ -94,9 +94,9 @@ class InverseKinematicsSolver(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period, period, self._update)
 
     def _initialize(self, context: Context, discrete: DiscreteValues) -> EventStatus:
-        start = context.get_discrete_state(self._desired).value()
+        discrete.set_value(self._previous, self._start)
         discrete.set_value(self._previous_time, np.array([context.get_time()]))
-        return self._solve(start[: self._n] + self._first_bend, context, discrete)
+        return self._solve(self._start[: self._n] + self._first_bend, context, discrete)
 
     def _update(self, context: Context, discrete: DiscreteValues) -> EventStatus:
         last = context.get_discrete_state(self._desired).value()

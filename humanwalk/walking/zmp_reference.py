@@ -54,6 +54,8 @@ def desired_gait(
     width = max(placement.step_width, placement.min_width + abs(move.imag))
     half = 0.5j * width * (1.0 + cmath.exp(1j * turn))
     along = move * cmath.exp(0.5j * turn)
+    # When walking backward, the heel stays down.
+    descent = descent if command.forward >= 0.0 else 0.0
     roll = parameters.support.roll * complex(max(command.forward, 0.0), command.sideways)
     descending_roll = descent * (parameters.support.descent - parameters.support.center)
     return PeriodicGait(

@@ -100,6 +100,17 @@ def test_initialization_solves_for_time_zero(
     assert solver.GetOutputPort("sample_time").Eval(context)[0] == 0.0
 
 
+def test_a_second_initialization_gives_the_same_bits(
+    solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics]
+) -> None:
+    context = fixed_context(solver, legs)
+    initialized(solver, context)
+    once = [solver.GetOutputPort(name).Eval(context).copy() for name in ("desired_state", "previous_state")]
+    initialized(solver, context)
+    for name, before in zip(("desired_state", "previous_state"), once, strict=True):
+        np.testing.assert_array_equal(solver.GetOutputPort(name).Eval(context), before)
+
+
 def test_rates_give_the_desired_velocity_of_the_soles(
     solver: InverseKinematicsSolver, legs: dict[Side, LegKinematics], places: dict[Side, list[int]]
 ) -> None:

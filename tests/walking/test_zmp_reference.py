@@ -216,6 +216,12 @@ def test_on_a_plane_the_gaits_that_follow_are_the_same() -> None:
     assert set(gaits) == {gaits[0]}
 
 
+@given(st.floats(-0.6, -0.01))
+def test_a_step_down_backward_keeps_the_pressure_of_a_flat_foot(speed: float) -> None:
+    state, command = state_at(), Command(speed)
+    assert desired_gait(state, command, PARAMETERS, descent=1.0) == desired_gait(state, command, PARAMETERS)
+
+
 @given(st.floats(0.0, 0.8))
 def test_the_pivot_is_ahead_of_the_ball_while_the_heel_is_up_before_a_step_down(speed: float) -> None:
     gait = desired_gait(state_at(), Command(speed), PARAMETERS, descent=1.0)
