@@ -589,10 +589,11 @@ def test_the_text_of_an_override_holds_one_value_and_no_other_field() -> None:
 
 @pytest.mark.parametrize("level", ["foot_force", "upper_body"])
 def test_a_balance_level_is_no_faster_than_its_control_period(level: str) -> None:
-    field = f"controller.thesis.balance.{level}.time_constant"
+    field, on = (f"controller.thesis.balance.{level}.{name}" for name in ("time_constant", "enabled"))
     with pytest.raises(ParameterError, match=rf"balance\.{level}\.time_constant: 0\.004 .*control_period, 0\.01 s, on"):
-        load_scenario("thesis", {field: 0.004})
-    load_scenario("thesis", {field: 0.004, "controller.thesis.control_period": 0.004})
+        load_scenario("thesis", {field: 0.004, on: True})
+    load_scenario("thesis", {field: 0.004, on: True, "controller.thesis.control_period": 0.004})
+    load_scenario("thesis", {field: 0.004})
 
 
 def test_untested_speeds_and_pushes_after_the_end_are_warnings() -> None:

@@ -95,9 +95,12 @@ class ThesisController:
 
     def __post_init__(self) -> None:
         """Raise ParameterError for a lag of a balance level that its time steps cannot follow: it would diverge."""
-        levels = {"foot_force": self.balance.foot_force, "upper_body": self.balance.upper_body}
+        levels: dict[str, FootForceBalanceParameters | UpperBodyBalanceParameters] = {
+            "foot_force": self.balance.foot_force,
+            "upper_body": self.balance.upper_body,
+        }
         for name, level in levels.items():
-            if level.time_constant < self.control_period:
+            if level.enabled and level.time_constant < self.control_period:
                 raise ParameterError(
                     f"balance.{name}.time_constant: {level.time_constant:g} is too short; allowed: from "
                     f"control_period, {self.control_period:g} s, on; raise it, or lower control_period"

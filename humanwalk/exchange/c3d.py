@@ -16,7 +16,11 @@ from humanwalk.exchange.motion import GroundForce, ground_forces, marker_paths, 
 from humanwalk.extras import missing_package
 from humanwalk.files import write_whole
 from humanwalk.numerics import Array
+from humanwalk.quantity import ParameterError, printable
 from humanwalk.run.folder import Run
+
+MAX_FRAMES = 65_535
+"""Most frames that the 16 bits of a C3D header count; readers drop the rest."""
 
 R_WF: Array = np.diag([-1.0, 1.0, -1.0])
 """From a force plate's frame F, whose z points down by convention, to W."""
@@ -29,9 +33,14 @@ def write_c3d(run: Run, folder: Path) -> list[Path]:
     moment about the center of the plate's surface.
 
     Raises:
-        ParameterError: ezc3d is not installed.
+        ParameterError: ezc3d is not installed, or the run is too long.
     """
     path = folder / "run.c3d"
+    if run.time.size > MAX_FRAMES:
+        raise ParameterError(
+            f"{printable(run.path)}: {run.time.size} samples; allowed in C3D: up to {MAX_FRAMES}; export csv or mat, "
+            "or walk with a longer recording.signal_period"
+        )
     c3d = _c3d(_ezc3d(), run)
     write_whole(path, lambda beside: c3d.write(str(beside)))
     return [path]

@@ -31,11 +31,14 @@ def vertical_force(signals: pa.Table, side: Side, weight: float) -> Array:
 def force_peaks(force: Array, foot: FootEvents) -> Array:
     """First peak, dip and second peak of a force over every whole stance, shape (rows,) -> (stances, 3).
 
-    The peaks are the greatest values in either half of the stance, the dip is the least value between them.
+    The peaks are the greatest values in either half of the stance, the dip is the least value between them. A stance of
+    one row has no halves, and is left out.
     """
     peaks = []
     for a, b in foot.stances:
-        middle = a + max(1, (b - a) // 2)
+        if b - a < 2:
+            continue
+        middle = a + (b - a) // 2
         first, second = a + int(force[a:middle].argmax()), middle + int(force[middle:b].argmax())
         peaks.append((force[first], force[first : second + 1].min(), force[second]))
     return np.array(peaks).reshape(-1, 3)

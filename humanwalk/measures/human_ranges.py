@@ -55,6 +55,16 @@ class Pace:
         return dimensionless_speed(self.speed, self.leg)
 
     @property
+    def legs(self) -> float:
+        """Leg length over that of an adult."""
+        return self.leg / human().hip_height
+
+    @property
+    def adult_speed(self) -> float:
+        """Speed of a dynamically similar adult [m/s]."""
+        return self.speed / math.sqrt(self.legs)
+
+    @property
     def group(self) -> SpeedGroup:
         """People who walk at this dimensionless speed."""
         return speed_group(self.dimensionless)
@@ -71,15 +81,19 @@ class People:
 
 def people_com_excursion(direction: str, pace: Pace) -> People | None:
     """Human range of the center of mass [m]; None outside of the two speeds of the source."""
-    if not COM_SPEEDS[0] <= pace.speed <= COM_SPEEDS[1]:
+    speed = pace.adult_speed
+    if not COM_SPEEDS[0] <= speed <= COM_SPEEDS[1]:
         return None
-    mean, sd = (float(np.interp(pace.speed, COM_SPEEDS, ends)) for ends in zip(*COM_EXCURSIONS[direction], strict=True))
-    return People(mean - sd, mean + sd, f"{ORENDURFF}, at this speed")
+    mean, sd = (
+        pace.legs * float(np.interp(speed, COM_SPEEDS, ends)) for ends in zip(*COM_EXCURSIONS[direction], strict=True)
+    )
+    return People(mean - sd, mean + sd, f"{ORENDURFF}, at this speed and leg length")
 
 
 def people_speed(pace: Pace) -> People:
-    """Human speed, as women and men choose it [m/s]; it does not depend on the pace."""
-    return People(1.28, 1.43, f"{PERRY}, women and men at their own speed")
+    """Human speed, as women and men choose it [m/s]; it does not depend on the speed of the walk."""
+    scale = math.sqrt(pace.legs)
+    return People(1.28 * scale, 1.43 * scale, f"{PERRY}, women and men at their own speed, at this leg length")
 
 
 def people_steps(pace: Pace) -> tuple[People, People]:
@@ -88,7 +102,7 @@ def people_steps(pace: Pace) -> tuple[People, People]:
     With the walk ratio r, the length is sqrt(60 r speed), and the cadence 60 speed / length. Dynamically similar bodies
     have walk ratios in proportion to the leg length to the power 1.5.
     """
-    scale = (pace.leg / human().hip_height) ** 1.5
+    scale = pace.legs**1.5
     low, high = (math.sqrt(60.0 * scale * ratio * pace.speed) for ratio in WALK_RATIOS)
     source = f"{PERRY}: walk ratio, from women's to men's, at this speed and leg length"
     return People(low, high, source), People(60.0 * pace.speed / high, 60.0 * pace.speed / low, source)
@@ -97,8 +111,8 @@ def people_steps(pace: Pace) -> tuple[People, People]:
 def people_stance(pace: Pace) -> People:
     """Human share of stance."""
     at_rest, slope, sd = STANCE_SHARE
-    mean = at_rest + slope * pace.speed
-    return People(mean - sd, mean + sd, f"{KIRTLEY}, at this speed")
+    mean = at_rest + slope * pace.adult_speed
+    return People(mean - sd, mean + sd, f"{KIRTLEY}, at this speed and leg length")
 
 
 def people_double_support(pace: Pace) -> People:

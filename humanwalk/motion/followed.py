@@ -105,10 +105,12 @@ class _Columns:
         angles = np.zeros((self.table.time.size, len(joints.names)))
         missing = []
         for i, name in enumerate(joints.names):
-            found = self._angle(name, self._candidates(name), COORDINATES.get(name, ("", 1.0))[1])
             if name in self._mapping.hold:
                 angles[:, i] = self._mapping.hold[name]
-            elif found is not None:
+                self._used.update(self._candidates(name))
+                continue
+            found = self._angle(name, self._candidates(name), COORDINATES.get(name, ("", 1.0))[1])
+            if found is not None:
                 angles[:, i] = found
             elif name in spine:
                 angles[:, i] = spine[name]
@@ -134,8 +136,7 @@ class _Columns:
 
     def pelvis_position(self) -> Array | None:
         """p_WP [m], shape (rows, 3), or None where it is not recorded."""
-        found = [self._values(name, [name]) for name in PELVIS_TRANSLATIONS]
-        present = [values for values, _ in (pair for pair in found if pair is not None)]
+        present = [values for values in map(self._length, PELVIS_TRANSLATIONS) if values is not None]
         if not present:
             return None
         if len(present) < 3:
@@ -143,7 +144,7 @@ class _Columns:
                 f"{self._file}: only some of {', '.join(PELVIS_TRANSLATIONS)} are present; allowed: all three or none; "
                 "add or remove columns"
             )
-        position: Array = METERS[self._mapping.length_unit] * np.column_stack(present) @ R_OW
+        position: Array = np.column_stack(present) @ R_OW
         self._bounded("pelvis path", position, MAX_PELVIS_POSITION, "m")
         speed = np.linalg.norm(np.diff(position, axis=0), axis=1) / np.diff(self.table.time)
         row = int(np.argmax(speed))
@@ -154,6 +155,16 @@ class _Columns:
                 "(length_unit: mm) in --mapping, and close jumps"
             )
         return position
+
+    def _length(self, name: str) -> Array | None:
+        """A translation of the pelvis [m], or None; its unit is that in the column's name, else that of the mapping."""
+        named = {f"{name}_{unit}": length for unit, length in METERS.items()}
+        found = self._values(name, [name, *named])
+        if found is None:
+            return None
+        values, column = found
+        unit = METERS[self._mapping.length_unit]
+        return values * (unit if name in self._mapping.columns else named.get(column, unit))
 
     def _candidates(self, joint: str) -> list[str]:
         coordinate = _spellings(COORDINATES[joint][0]) if joint in COORDINATES else []

@@ -50,7 +50,7 @@ class MotionTable:
         columns: Names, without time.
         time: [s], increasing, shape (rows,).
         data: Shape (rows, columns).
-        in_degrees: Whether angles are in degrees; None where the file does not specify it (a .csv).
+        in_degrees: Whether angles are in degrees; None where the file does not specify it.
     """
 
     columns: tuple[str, ...]
@@ -78,7 +78,7 @@ def storage_text(name: str, table: MotionTable) -> str:
 
 
 def read_motion_table(path: Path) -> MotionTable:
-    """Read a .mot, .sto or .csv file; time [s] is the column named time or time_s, else the first.
+    """Read a .mot, .sto or .csv file; time [s] is the column named time or time_s, in any case, else the first.
 
     Raises:
         ParameterError: The file cannot be read, or a value in it cannot be used; the message has the line number.
@@ -114,7 +114,7 @@ def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTabl
             f"{name}: line {number}: one column, {brief(names[0])}; allowed: a time and angles; separate columns by "
             "commas, and write decimals with a point"
         )
-    time_column = next((names.index(candidate) for candidate in TIME_NAMES if candidate in names), 0)
+    time_column = next((i for i, column in enumerate(names) if column.lower() in TIME_NAMES), 0)
     data = array("d")
     for row, (number, cells) in enumerate(rows):
         place = f"{name}: line {number}"
@@ -130,7 +130,7 @@ def parse_motion_table(content: bytes, name: str, *, is_csv: bool) -> MotionTabl
     if header is not None:
         _require_size(header, table.shape, name)
     columns = tuple(column for i, column in enumerate(names) if i != time_column)
-    in_degrees = None if header is None else header.get("indegrees") == "yes"
+    in_degrees = {"yes": True, "no": False}.get((header or {}).get("indegrees", ""))
     return MotionTable(columns, table[:, time_column].copy(), np.delete(table, time_column, axis=1), in_degrees)
 
 
@@ -175,7 +175,7 @@ def _split(line: str, is_csv: bool) -> list[str]:
     if is_csv:
         return [cell.strip() for cell in next(csv.reader([line]))]
     # Older OpenSim files separate by spaces.
-    return [cell.strip() for cell in line.rstrip("\n").split("\t")] if "\t" in line else line.split()
+    return [cell.strip() for cell in line.rstrip().split("\t")] if "\t" in line.strip() else line.split()
 
 
 def _check_names(names: Sequence[str], place: str) -> None:

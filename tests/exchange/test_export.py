@@ -319,6 +319,15 @@ def test_unknown_format_is_refused(run: Run, tmp_path: Path) -> None:
     assert set(FORMATS) == {"opensim", "c3d", "csv", "mat"}
 
 
+def test_a_run_with_more_frames_than_c3d_counts_is_refused(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("humanwalk.exchange.c3d.MAX_FRAMES", run.time.size - 1)
+    with pytest.raises(ParameterError, match=r"samples; allowed in C3D: up to \d+; export csv or mat"):
+        export_run(run, "c3d", tmp_path)
+    assert not list(tmp_path.glob("*.c3d"))
+
+
 def test_csv_has_no_cell_that_a_spreadsheet_executes(run: Run, signals: pa.Table, tmp_path: Path) -> None:
     """A spreadsheet takes text that begins with one of =+-@ for a formula; only numbers may be negative."""
     (path,) = export_run(run, "csv", tmp_path / "out")

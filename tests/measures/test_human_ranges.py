@@ -2,6 +2,7 @@
 
 import pytest
 
+from humanwalk.body import human
 from humanwalk.measures.human_ranges import (
     Pace,
     people_com_excursion,
@@ -13,7 +14,7 @@ from humanwalk.measures.human_ranges import (
     people_steps,
 )
 
-LEG = 0.93
+LEG = human().hip_height
 
 
 @pytest.mark.parametrize("speed", [0.9, 1.2, 1.4])
@@ -34,6 +35,18 @@ def test_steps_of_dynamically_similar_people_are_in_proportion(size: float) -> N
         assert getattr(length_there, end) == pytest.approx(size * getattr(length, end))
         assert getattr(cadence_there, end) == pytest.approx(size**-0.5 * getattr(cadence, end))
         assert getattr(width_there, end) == pytest.approx(size * getattr(width, end))
+
+
+@pytest.mark.parametrize("size", [0.6, 0.8, 1.1])
+def test_ranges_of_dynamically_similar_people_are_in_proportion(size: float) -> None:
+    pace, similar = Pace(1.2, 0.9), Pace(1.2 * size**0.5, 0.9 * size)
+    assert people_stance(similar).low == pytest.approx(people_stance(pace).low)
+    assert people_speed(similar).high == pytest.approx(people_speed(pace).high * size**0.5)
+    for direction in ("vertical", "lateral"):
+        there, here = (people_com_excursion(direction, at) for at in (similar, pace))
+        assert there is not None
+        assert here is not None
+        assert (there.low, there.high) == pytest.approx((size * here.low, size * here.high))
 
 
 def test_people_stand_on_both_feet_as_long_as_two_stances_exceed_a_stride() -> None:

@@ -97,6 +97,25 @@ def test_mapping_renames_scales_and_changes_units(tmp_path: Path, joints: JointM
     np.testing.assert_allclose(motion.angles[:, place["LeftLegFemurTwistMotion"]], 0.1)
 
 
+def test_a_joint_that_is_held_needs_no_readable_column(tmp_path: Path, joints: JointMap) -> None:
+    csv = tmp_path / "lab.csv"
+    columns = {f"{name}_deg": values for name, values in squat().items()}
+    columns["hip_rotation_r"] = columns.pop("hip_rotation_r_deg")
+    rows = np.column_stack((TIME, *columns.values()))
+    csv.write_text("\n".join([",".join(("time", *columns)), *(",".join(map(repr, row.tolist())) for row in rows)]))
+    mapping = tmp_path / "map.yaml"
+    mapping.write_text("hold: {RightLegFemurTwistMotion: 0.1}\n")
+    place = joints.names.index("RightLegFemurTwistMotion")
+    np.testing.assert_allclose(read(csv, mapping).angles[:, place], 0.1)
+
+
+@pytest.mark.parametrize(("unit", "length"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001)])
+def test_the_pelvis_path_has_the_unit_of_its_columns(tmp_path: Path, unit: str, length: float) -> None:
+    path = {f"pelvis_tx_{unit}": TIME / length, f"pelvis_ty_{unit}": 0.0 * TIME, f"pelvis_tz_{unit}": 0.0 * TIME}
+    motion = read(write_mot(tmp_path / "t.mot", squat(0) | path))
+    np.testing.assert_allclose(motion.pelvis_position[-1, :2], [1.0, 0.0], atol=1e-9)
+
+
 def test_error_names_all_missing_joints_and_the_fix(tmp_path: Path) -> None:
     columns = squat()
     del columns["knee_angle_r"], columns["hip_rotation_l"]

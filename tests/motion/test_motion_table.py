@@ -81,6 +81,23 @@ def test_a_cell_is_a_number_in_digits_of_ascii(tmp_path: Path, cell: str) -> Non
     assert "is not a number" in refusal(written(tmp_path, f"time,a\n0,{cell}\n1,2\n"))
 
 
+def test_a_storage_header_without_a_flag_leaves_the_unit_open(tmp_path: Path) -> None:
+    path = written(tmp_path, "t\nversion=1\nendheader\ntime\ta\n0\t1\n1\t3\n", "t.mot")
+    assert read_motion_table(path).in_degrees is None
+
+
+@pytest.mark.parametrize("name", ["Time", "TIME", "Time_s"])
+def test_time_is_found_in_any_column_and_case(tmp_path: Path, name: str) -> None:
+    table = read_motion_table(written(tmp_path, f"Frame,{name},a\n1,0.00,5\n2,0.01,6\n"))
+    assert table.columns == ("Frame", "a")
+    np.testing.assert_array_equal(table.time, [0.0, 0.01])
+
+
+def test_a_separator_at_the_end_of_every_line_is_no_column(tmp_path: Path) -> None:
+    text = HEAD.format(flag="yes") + "time\ta\tb\t\n0\t1\t2\t\n1\t3\t4\t\n"
+    assert read_motion_table(written(tmp_path, text, "t.mot")).columns == ("a", "b")
+
+
 @pytest.mark.parametrize(("flag", "degrees"), [("yes", True), ("no", False), ("YES", True)])
 def test_storage_header_specifies_degrees_or_radians(tmp_path: Path, flag: str, degrees: bool) -> None:
     path = written(tmp_path, HEAD.format(flag=flag) + "time a b\n 0 1 2\n 1  3 4\n", "t.sto")
