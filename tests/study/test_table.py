@@ -194,8 +194,8 @@ def test_parts_of_a_study_are_joined(tmp_path: Path) -> None:
 
 
 def test_a_study_with_every_field_written_out_may_be_larger_than_a_file_of_the_user(tmp_path: Path) -> None:
-    pushes = ", ".join("{time: 1.0}" for _ in range(1000))
-    study = parse_study(f"scenario: stand\nset: {{pushes.given: [{pushes}]}}\nfactors: {{seed: [0, 1]}}\n")
+    pushes = ", ".join("{time: 1.25, direction: -1.2345}" for _ in range(1000))
+    study = parse_study(f"scenario: {{pushes: {{given: [{pushes}]}}}}\nfactors: {{seed: [0, 1]}}\n")
     fill(tmp_path / "large", study, [0])
     assert (tmp_path / "large" / STUDY).stat().st_size > MAX_FILE_SIZE
     assert same_study(read_study(tmp_path / "large"), study)
