@@ -126,7 +126,7 @@ def require_look(look: str) -> None:
 
 
 class DescriptionColumn(TextColumn):
-    """What a task does; it may have names from others, see `SafeConsole`."""
+    """The description of a task; names in it may come from others, see `SafeConsole`."""
 
     def __init__(self) -> None:
         """Make a column."""

@@ -40,10 +40,7 @@ class BestEffort:
 def encode_all(stream: object) -> None:
     """Let a text stream take every character: a file or pipe has UTF-8, a terminal escapes what it cannot show."""
     if isinstance(stream, io.TextIOWrapper):
-        if stream.isatty():
-            stream.reconfigure(errors="backslashreplace")
-        else:
-            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
+        stream.reconfigure(encoding=None if stream.isatty() else "utf-8", errors="backslashreplace")
 
 
 def discard(stream: IO[str]) -> None:

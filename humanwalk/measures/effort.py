@@ -50,7 +50,7 @@ def cost_of_transport(signals: pa.Table, rows: Mask, mass: float, distance: floa
 def joint_work(signals: pa.Table, strides: Sequence[tuple[int, int]]) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
-    A stride lasts from a row to another; without a stride there is None.
+    `strides` has the first and last row of each stride. Without strides the result is None.
     """
     if not strides:
         return None

@@ -49,7 +49,7 @@ class FootEvents:
         contact: whether the foot is in stance, shape (rows,).
         touchdowns: first rows of the stances, without a stance that the record begins with.
         toe_offs: first rows after the stances, without a stance that the record ends with.
-        counted: rows of which events, strides and stances count, shape (rows,).
+        counted: whether a row counts, shape (rows,); strides and stances need all of their rows.
     """
 
     time: Array
@@ -70,7 +70,7 @@ class FootEvents:
 
     @property
     def stances(self) -> list[tuple[int, int]]:
-        """Rows of touchdown and toe-off of each whole stance of which all rows count."""
+        """Rows of touchdown and toe-off of each whole stance, if all rows between them count."""
         after = np.searchsorted(self.toe_offs, self.touchdowns)
         whole = [
             (int(down), int(self.toe_offs[i]))
@@ -89,7 +89,7 @@ def foot_events(time: Array, force: Array, counted: Mask | None = None) -> FootE
     Args:
         time: of the samples [s], increasing, shape (rows,).
         force: vertical ground reaction force [N], shape (rows,).
-        counted: rows of which events count, shape (rows,); None for all.
+        counted: whether a row counts, shape (rows,); None if all do.
     """
     contact = in_contact(force)
     counted = np.ones_like(contact) if counted is None else counted

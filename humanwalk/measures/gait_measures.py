@@ -63,7 +63,7 @@ def gait_measures(signals: pa.Table, counted: Mask, facing: Array) -> GaitMeasur
 
     Args:
         signals: the record.
-        counted: rows of it that count, shape (rows,).
+        counted: whether a row counts, shape (rows,).
         facing: heading at every row, see `Directions`.
     """
     feet = {side: events_of(signals, side, counted) for side in SIDES}

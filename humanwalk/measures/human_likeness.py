@@ -17,6 +17,7 @@ from humanwalk.measures.curves import CURVES, JOINTS
 from humanwalk.measures.signals import matrix
 from humanwalk.measures.symmetry import Asymmetry, asymmetries
 from humanwalk.measures.walk_measures import MEASURES, Measure, Walk
+from humanwalk.motion.recorded_strides import MAX_HEADING
 from humanwalk.numerics import Array
 from humanwalk.quantity import ParameterError
 from humanwalk.scenario import Scenario
@@ -25,8 +26,7 @@ SCORED = tuple(f"{joint}{quantity}" for quantity in ("", " moment", " power") fo
 """Curves of the overall score."""
 
 MIN_STRIDES = 2
-MAX_HEADING = np.radians(20.0)
-"""Strides of each leg that a comparison needs, and their largest angle from straight ahead [rad]."""
+"""Number of strides of each leg that a comparison needs."""
 
 
 @dataclass(frozen=True)

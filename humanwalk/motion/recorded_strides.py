@@ -35,7 +35,7 @@ MIN_DISPLACEMENT = 0.5
 ground, where the foot stands for 60 % of a stride, and 0 on a treadmill (our choice)."""
 
 MAX_HEADING = np.deg2rad(20.0)
-"""Largest angle between the walk and x [rad]; its speed and angles are those along the walk."""
+"""Largest angle between a straight walk and x [rad] (our choice); speed and angles are those along the walk."""
 
 POINTS = 100
 """Points of the gait cycle at which strides are averaged."""

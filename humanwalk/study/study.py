@@ -101,8 +101,8 @@ class Study:
             lost = next((earlier for earlier in values for field in own if is_within(earlier, field)), None)
             if lost is not None:
                 raise ParameterError(
-                    f"factors: {name} replaces {lost}, which a factor before it sets; allowed: a field of one factor, "
-                    "or a group first and then a field in it; change the order, or remove one"
+                    f"factors: {name} replaces {lost}, which a factor before it sets; allowed: each field once, or a "
+                    "group before a field in it; change the order, or remove one"
                 )
             values |= own
         return values
