@@ -13,8 +13,8 @@ from humanwalk.walking.command import CommandProfile
 def steady_rows(signals: pa.Table, scenario: Scenario) -> Mask:
     """Rows of a record in which the walk is steady, shape (rows,).
 
-    It is from `Controller.steady_from` on. With a command it is also while the commanded velocity is not zero and has
-    been the same for SETTLING.
+    The walk is steady from `Controller.steady_from` on. With a command, the commanded velocity must also be other than
+    zero, and unchanged for SETTLING.
     """
     time, controller, subject = signals[TIME].to_numpy(), scenario.controller, scenario.subject
     begun: Mask = time >= controller.steady_from(subject)

@@ -138,7 +138,7 @@ class Study:
         Raises:
             ParameterError: as `require_valid`.
         """
-        counts = Counter(line for scenario in self.scenarios() for line in dict.fromkeys(scenario.warnings))
+        counts = Counter(line for scenario in self.scenarios() for line in scenario.warnings)
         return tuple(f"{line} ({count} of {len(self.points)} points)" for line, count in counts.items())
 
 
