@@ -6,6 +6,7 @@ python benchmarks/pages.py runs/balance_speeds runs/push_random    # and takes o
 
 import argparse
 import json
+import math
 import re
 import sys
 from collections.abc import Callable
@@ -16,6 +17,8 @@ from studies import STUDIES, keep, table
 from terrain_counts import terrain_walks
 
 from humanwalk.bench.result import COLUMNS, read_result
+from humanwalk.body import human
+from humanwalk.body.skeleton import Joint
 from humanwalk.files import write_text
 from humanwalk.quantity import ParameterError
 
@@ -177,10 +180,23 @@ def _contact(walk: str, more: dict[str, tuple[str, ...]]) -> str:
 
 
 PERFORMANCE = (bench, accuracy, scaling_time, scaling_contacts, scaling_workers, mujoco)
+
+
+def joints() -> str:
+    def row(joint: Joint) -> list[str]:
+        low, high = (f"{math.degrees(limit):.0f}" for limit in joint.range_rad)
+        x, y, z = (f"{component:.0f}" for component in joint.axis)
+        return [f"`{joint.name}`", joint.motion, f"({x}, {y}, {z})", f"{low} to {high}", f"{joint.effort_limit_N_m:g}"]
+
+    headings = ["joint", "positive motion", "axis", "range [deg]", "torque limit [N m]"]
+    return table(headings, map(row, human().joints))
+
+
 PAGES: dict[Path, tuple[Callable[[], str], ...]] = {
     DOCS / "performance.md": PERFORMANCE,
     DOCS / "contact.md": (contact_thesis, contact_walk),
     DOCS / "howto/terrain.md": (terrain_walks,),
+    DOCS / "reference/signals.md": (joints,),
     **{DOCS / page: sections for page, sections in STUDIES.items()},
 }
 

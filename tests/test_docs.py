@@ -7,17 +7,21 @@ import runpy
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from humanwalk.body.joint_map import JointMap
 from humanwalk.body.segment_table import segment_rows
 from humanwalk.body.subject import Subject
 from humanwalk.choices import CONTROLLERS, BalancedController, PdActuation
-from humanwalk.diagrams.walker import make_diagram
+from humanwalk.diagrams.walker import make_diagram, make_walker
+from humanwalk.measures.signals import TIME
 from humanwalk.parameter_file import build
 from humanwalk.quantity import tag_of
+from humanwalk.run.recorder import recorded_signals
 from humanwalk.scenario import load_scenario, parse_scenario, shipped_scenarios
 from humanwalk.study.cluster import SlurmParameters
 from humanwalk.study.study import parse_study
@@ -118,11 +122,35 @@ def test_the_table_of_gains_is_the_code() -> None:
     assert rows == list(gains(BalancedController()))
 
 
+WALKERS: list[tuple[str, dict[str, Any]]] = [
+    *(("thesis", {f"controller.thesis.balance.{level}.enabled": True}) for level in ("foot_force", "upper_body")),
+    *(("thesis", {"actuation": actuation}) for actuation in ("pid", "adaptive")),
+    ("walk", {"subject.devices": "[hip_exoskeleton]"}),
+]
+"""Scenarios that together record every signal."""
+
+PLACEHOLDERS = {".": r"\.", "JOINT": r"\w+Motion", "SIDE": "(right|left)", "AXIS": "[xyz]"}
+
+
+def test_the_table_of_signals_has_every_column_once(joints: JointMap) -> None:
+    page = (DOCS / "reference" / "signals.md").read_text(encoding="utf-8").partition("## Joints")[0]
+    names = re.findall(r"`(\S+)`", "".join(re.findall(r"^\| (`[^|]*)\|", page, re.MULTILINE)))
+    patterns = [reduce(lambda name, each: name.replace(*each), PLACEHOLDERS.items(), name) for name in names]
+    walkers = [make_walker(load_scenario(name, changes)) for name, changes in WALKERS]
+    columns = {column for walker in walkers for signal in recorded_signals(walker, joints) for column in signal.columns}
+    found = {column: [pattern for pattern in patterns if re.fullmatch(pattern, column)] for column in {TIME, *columns}}
+    assert {column: fitting for column, fitting in found.items() if len(fitting) != 1} == {}
+    assert set(patterns) == {fitting for (fitting,) in found.values()}
+
+
 def test_the_moving_picture_is_light_enough_for_a_first_screen() -> None:
     assert 10_000 < (DOCS / "images" / "walker.webp").stat().st_size < MOVING_PICTURE_LIMIT
 
 
-PAGES = ("performance", "robustness", "likeness", "contact", "claims", "actuation", "howto/subjects")
+PAGES = (
+    *("performance", "robustness", "likeness", "contact", "claims", "actuation"),
+    *("howto/subjects", "howto/terrain", "reference/signals"),
+)
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -23,6 +23,7 @@ UNITS = {
     "deg": "deg",
     "m": "m",
     "N": "N",
+    "kg": "kg",
     "s": "s",
     "J": "J",
     "BW": "BW",
