@@ -174,14 +174,35 @@ def overrides_of(pairs: list[str]) -> dict[str, str]:
     """Fields and values of --set.
 
     Raises:
-        ParameterError: A pair is not FIELD=VALUE.
+        ParameterError: A pair is not FIELD=VALUE, or undoes one before it.
     """
-    overrides = {}
+    overrides: dict[str, str] = {}
     for pair in pairs:
         key, equals, value = pair.partition("=")
         if not equals or not key:
             raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
+        for before in overrides:
+            if is_within(before, key):
+                raise ParameterError(
+                    f"--set {key}: undoes --set {before} before it; allowed: a field once, and its parts after it; "
+                    "leave one out"
+                )
         overrides[key] = value
+    return overrides
+
+
+def option_overrides(pairs: list[str], options: Mapping[str, str | float | None]) -> dict[str, str]:
+    """Overrides of options that stand for a field each, without those that are not given (None).
+
+    Args:
+        pairs: Those of --set.
+        options: Values by field name.
+
+    Raises:
+        ParameterError: A field of --set that an option replaces.
+    """
+    overrides = {field: str(value) for field, value in options.items() if value is not None}
+    require_kept(overrides_of(pairs), overrides)
     return overrides
 
 

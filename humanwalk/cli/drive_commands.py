@@ -5,12 +5,12 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.changes import Changes, takes_changes
+from humanwalk.cli.changes import Changes, option_overrides, takes_changes
 from humanwalk.cli.common import SIMULATE, CheckpointOption, ScenarioArgument, app, console
 from humanwalk.run.checkpoint import CHECKPOINT_PERIOD
 
 DURATION = 300.0
-"""Longest driven walk unless --duration is given [s]."""
+"""Longest driven walk unless --duration is given, or --set duration [s]."""
 
 
 @app.command(
@@ -24,7 +24,9 @@ def drive(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder of the run; new or empty. Default: runs/drive.")
     ] = None,
-    duration: Annotated[float, typer.Option(help="Longest simulated time of a walk [s].")] = DURATION,
+    duration: Annotated[
+        float | None, typer.Option(help=f"Longest simulated time of a walk [s]. Default: {DURATION:g}.")
+    ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0 for a free one.")] = 0,
     record: Annotated[bool, typer.Option(help="Save the walks; the page can change it.")] = True,
@@ -39,7 +41,8 @@ def drive(
     """
     from humanwalk.cli.drive import drive_and_write
 
-    overrides = {"duration": repr(duration)} | changes.overrides(scenario)
+    options = option_overrides(changes.set_, {"duration": duration})
+    overrides = {"duration": str(DURATION)} | changes.overrides(scenario) | options
     drive_and_write(
         scenario,
         overrides,

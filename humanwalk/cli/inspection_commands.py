@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from humanwalk.cli.changes import Changes, SetOption, overrides_of, takes_changes
+from humanwalk.cli.changes import Changes, SetOption, option_overrides, overrides_of, takes_changes
 from humanwalk.cli.common import (
     INSPECT,
     INTERRUPTED,
@@ -106,7 +106,9 @@ def bench(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Names or YAML files. Default: all shipped.")
     ] = None,
-    duration: Annotated[float, typer.Option(help="Simulated time of each scenario [s].")] = BENCH_DURATION,
+    duration: Annotated[
+        float | None, typer.Option(help=f"Simulated time of each scenario [s]. Default: {BENCH_DURATION:g}.")
+    ] = None,
     repeats: Annotated[
         int, typer.Option(min=1, help="Number of measurements of each scenario, taken by turns.")
     ] = BENCH_REPEATS,
@@ -126,7 +128,7 @@ def bench(
 
     if compare is not None:
         others = {"SCENARIO": names, "-o": json_file, "--overwrite": overwrite, "--set": set_}
-        others |= {"--duration": duration != BENCH_DURATION, "--repeats": repeats != BENCH_REPEATS}
+        others |= {"--duration": duration is not None, "--repeats": repeats != BENCH_REPEATS}
         if given := [name for name, value in others.items() if value]:
             raise ParameterError(
                 f"--compare: measures nothing, and {', '.join(given)} would be ignored; allowed: two files alone; "
@@ -136,7 +138,8 @@ def bench(
         return
     if json_file is not None:
         require_new(json_file, overwrite)
-    overrides = {"duration": repr(duration)} | overrides_of(set_)
+    options = option_overrides(set_, {"duration": duration})
+    overrides = {"duration": str(BENCH_DURATION)} | overrides_of(set_) | options
     found: BenchResult | None = None
     with counted_progress("repeats") as progress:
         task = progress.add_task("", total=None)

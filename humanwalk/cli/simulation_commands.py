@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from humanwalk.cli.changes import Changes, overrides_of, require_kept, takes_changes
+from humanwalk.cli.changes import Changes, option_overrides, takes_changes
 from humanwalk.cli.common import (
     DIFFERS,
     FELL,
@@ -77,11 +77,9 @@ def walk(
             f"--follow {printable(follow)}: --set controller replaces what follows the recording; allowed: one of the "
             "two; leave one out"
         )
-    options = {} if duration is None else {"duration": repr(duration)}
     if look is not None:
         require_look(look)
-        options["subject.look"] = look
-    require_kept(overrides_of(changes.set_), options)
+    options = option_overrides(changes.set_, {"duration": duration, "subject.look": look})
     run = walk_and_write(
         scenario,
         overrides | options,

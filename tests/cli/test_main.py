@@ -282,6 +282,8 @@ def test_shown_commands_call_the_program_as_it_was_called(
         (("--duration", "-1"), "duration"),
         (("--duration", "1", "--set", "duration=2"), "--set duration: another option replaces duration; allowed: one"),
         (("--look", "bones", "--set", "subject.look=person"), "--set subject.look: another option replaces"),
+        (("--set", "duration=1", "--set", "duration=2"), "--set duration: undoes --set duration before it"),
+        (("--set", "subject.mass=60", "--set", "subject={mass: 70}"), "--set subject: undoes --set subject.mass"),
         (("--duration", "nan"), "write a number"),
         (("--set", "controller.thesis.gait.path.offset=0.03"), "shorten the step"),
         (("--set", "controller.thesis.gait.path.toe_drop=0"), "Ankle"),
@@ -295,6 +297,12 @@ def test_invalid_walk_produces_one_line_and_leaves_no_file(
     refusal: Any, arguments: Any, said: Any, output: Any
 ) -> None:
     assert said in refusal("walk", *arguments, *output, "--no-replay", "--no-plots")
+
+
+@pytest.mark.parametrize("command", ["walk", "drive", "bench"])
+def test_the_duration_of_the_option_and_of_set_are_not_both_given(refusal: Any, command: str) -> None:
+    both = ("--duration", "1", "--set", "duration=2")
+    assert "--set duration: another option replaces duration" in refusal(command, "thesis", *both)
 
 
 def test_nonempty_output_is_refused_and_unchanged(refusal: Any, tmp_path: Path) -> None:
