@@ -6,6 +6,8 @@ import functools
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from humanwalk.parameter_file import fields_of, plain_value
 from humanwalk.quantity import ParameterError, printable
 from humanwalk.yaml_text import index_of, read_yaml, shown
@@ -19,17 +21,30 @@ def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
 def override(kind: type[Any], data: dict[str, Any], field: str, text: Any) -> None:
     """Replace a value in the mapping of a dataclass of parameters by YAML text; see `replace_value`.
 
-    A value that is not a string, for example a number from Python, is used unchanged.
+    A value that is not a string, for example a number from Python, is used as it is; NumPy's numbers and arrays become
+    numbers and lists.
 
     Raises:
-        ParameterError: the text is not YAML, or the field cannot be replaced.
+        ParameterError: the field is not text, the text is not YAML, or the field cannot be replaced.
     """
+    if not isinstance(field, str):
+        raise ParameterError(
+            f"{shown(field)}: not the name of a field; allowed: text, like subject.mass; name the field"
+        )
     if not isinstance(text, str):
-        replace_value(kind, data, field, text)
+        replace_value(kind, data, field, _without_numpy(text))
         return
     # Indented, so that no line of the text begins another field.
     indented = "\n ".join(text.splitlines())
     replace_value(kind, data, field, read_yaml(f"value: {indented}", f"--set {field}")["value"])
+
+
+def _without_numpy(value: Any) -> Any:
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {key: _without_numpy(entry) for key, entry in value.items()}
+    return [_without_numpy(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
 def replace_value(kind: Any, data: dict[str, Any], field: str, value: Any) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 from hypothesis import given, settings
@@ -608,3 +609,23 @@ def test_untested_speeds_and_pushes_after_the_end_are_warnings() -> None:
     speed, *pushes = scenario.warnings
     assert "2.1 m/s" in speed
     assert pushes == [f"pushes.given: the push at {time} s comes after the end at 5 s" for time in (5, 8)]
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("subject.mass", np.float32(60.0)), ("seed", np.int64(3)), ("duration", np.array(2.0))],
+)
+def test_numbers_of_numpy_are_numbers(field: str, value: Any) -> None:
+    assert load_scenario("walk", {field: value}) == load_scenario("walk", {field: value.item()})
+
+
+def test_arrays_of_numpy_are_lists() -> None:
+    points = [{"time": np.float32(speed), "forward": speed} for speed in np.linspace(1.0, 1.25, 2)]
+    walker = load_scenario("walk", {"controller.balanced.command.points": np.array(points)}).controller
+    assert isinstance(walker, BalancedController)
+    assert [point.forward for point in walker.command.points] == [1.0, 1.25]
+
+
+def test_a_field_that_is_not_text_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"^3: not the name of a field; allowed: text"):
+        load_scenario("walk", {3: 4})  # type: ignore[dict-item]
