@@ -7,7 +7,7 @@ import cmath
 from dataclasses import dataclass
 
 from humanwalk.numerics.scalars import clip
-from humanwalk.quantity import quantity
+from humanwalk.quantity import ParameterError, quantity
 
 CORRECTING = 0.7
 """Share of the distance of the nominal zero-moment point from the edge of the base of support that is there for
@@ -50,6 +50,15 @@ class BaseOfSupport:
     lateral_weight: float = quantity(3.0, "", 0.1, 30.0)
     """Weight of a sideways error relative to a forward error between two feet: the next step corrects a forward error
     with any foothold, a sideways error only with one farther out."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError if the nominal point or the limit of a raised heel is not between the limits."""
+        for name, low, limits in (("center", -self.back, "back or front"), ("ball", 0.0, "front")):
+            if not low <= (value := getattr(self, name)) <= self.front:
+                raise ParameterError(
+                    f"{name}: {value:g} is outside the base of support; allowed: {low:g} to {self.front:g} m; change "
+                    f"it, {limits}"
+                )
 
     def correctable(self, error: complex, growth: float) -> complex:
         """The part of an error that the zero-moment point can correct by the end of the step [m].

@@ -70,7 +70,7 @@ class FootRockers:
     late_rise: float = quantity(0.82, "", 0.0, 1.0)
     """Share of the pitch that grows with the cube of the time since heel-off; the rest grows with its square."""
 
-    toes: float = quantity(0.73, "rad", 0.0, 1.2)
+    toes: float = quantity(0.73, "rad", 0.01, 1.2)
     """Largest extension of the toes in a level step: a foot that pitches further rolls over their tips
     (docs/likeness_trials.md, "Which mechanisms make the forces human?")."""
 

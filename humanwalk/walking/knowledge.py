@@ -41,7 +41,7 @@ class NoisyKnowledge:
     """The terrain with smooth random errors, as from a map or a camera; the feet correct it where they stand."""
 
     height: float = quantity(0.01, "m", 0.0, 0.2)
-    """Standard deviation of the error of the height."""
+    """Standard deviation of the error of the height; with 0 the slope has no error either."""
 
     slope: float = quantity(0.02, "rad", 0.0, 0.3)
     """Standard deviation of the error of the slope along any direction."""

@@ -6,11 +6,27 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.quantity import ParameterError
 from humanwalk.walking.base_of_support import BaseOfSupport
 
 SUPPORT = BaseOfSupport()
 points = st.builds(complex, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
 headings = st.floats(-3.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        (
+            {"center": -0.05},
+            r"^center: -0\.05 is outside .*; allowed: -0\.04 to 0\.2 m; .*back or front$",
+        ),
+        ({"front": 0.05, "center": 0.04}, r"^ball: 0\.0815 is outside .*; allowed: 0 to 0\.05 m"),
+    ],
+)
+def test_limits_that_contradict_each_other_are_refused(limits: dict[str, float], said: str) -> None:
+    with pytest.raises(ParameterError, match=said):
+        BaseOfSupport(**limits)
 
 
 @given(points, points, headings, st.booleans())
