@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -38,6 +39,22 @@ def joint_signal(signals: pa.Table, joint: str, side: Side, quantity: str) -> Ar
     return values
 
 
+class LegRecord(NamedTuple):
+    """A record of a walk, relative to one leg.
+
+    Attributes:
+        signals: the record.
+        side: of the leg.
+        mass: body mass [kg].
+        facing: heading of the walk at every row (`Directions.facing`), or 1 for a walk along x.
+    """
+
+    signals: pa.Table
+    side: Side
+    mass: float
+    facing: Array | complex
+
+
 @dataclass(frozen=True)
 class Curve:
     """A curve over the gait cycle that is compared with people's.
@@ -46,8 +63,7 @@ class Curve:
         positive: its positive sense.
         unit: of its values.
         quantity: its name in the human data.
-        of: the values of a record relative to one leg, with the body mass [kg] and the heading of the walk at every row
-            (`Directions.facing`, or 1 for a walk along x), shape (rows,).
+        values: its values in a record, shape (rows,).
         people_scale: factor from the unit of the human data to `unit`.
         leg_scale: factor from the people of the human data to dynamically similar bodies with a leg length [m].
     """
@@ -55,9 +71,13 @@ class Curve:
     positive: str
     unit: str
     quantity: str
-    of: Callable[[pa.Table, Side, float, Array | complex], Array]
+    values: Callable[[LegRecord], Array]
     people_scale: float = 1.0
     leg_scale: Callable[[float], float] = lambda leg: 1.0
+
+    def of(self, signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
+        """Its values in a record, shape (rows,); see `LegRecord`."""
+        return self.values(LegRecord(signals, side, mass, facing))
 
     def people(self, group: SpeedGroup, leg: float = PEOPLE_LEG) -> Band:
         """People's curve in this unit, for a leg length [m]."""
@@ -65,46 +85,30 @@ class Curve:
         return Band(scale * band.mean, scale * band.sd)
 
 
-def _joint(
-    joint: Callable[[Leg], str],
-    factor: float,
-    zero: float,
-    signals: pa.Table,
-    side: Side,
-    mass: float,
-    facing: Array | complex,
-) -> Array:
-    angle: Array = signals[f"{joint(LEGS[side])}.angle_rad"].to_numpy()
+def _joint(joint: Callable[[Leg], str], factor: float, zero: float, walk: LegRecord) -> Array:
+    angle: Array = walk.signals[f"{joint(LEGS[walk.side])}.angle_rad"].to_numpy()
     return np.degrees(factor * angle + zero)
 
 
-def _pelvis(
-    axis: int,
-    left: int,
-    right: int,
-    zero: float,
-    signals: pa.Table,
-    side: Side,
-    mass: float,
-    facing: Array | complex,
-) -> Array:
-    angles: Array = (heading_rotation(facing).inv() * pelvis_rotation(signals)).as_euler("ZXY")[:, axis]
-    return np.degrees(angles * (left if side == "Left" else right) + zero)
+def _pelvis(axis: int, left: int, right: int, zero: float, walk: LegRecord) -> Array:
+    rotation = heading_rotation(walk.facing).inv() * pelvis_rotation(walk.signals)
+    angles: Array = rotation.as_euler("ZXY")[:, axis]
+    return np.degrees(angles * (left if walk.side == "Left" else right) + zero)
 
 
-def _progression(signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
-    forward = (heading_rotation(facing).inv() * sole_rotation(signals, side)).apply((1.0, 0.0, 0.0))
+def _progression(walk: LegRecord) -> Array:
+    forward = (heading_rotation(walk.facing).inv() * sole_rotation(walk.signals, walk.side)).apply((1.0, 0.0, 0.0))
     angle: Array = np.degrees(np.arctan2(forward[:, 1], forward[:, 0]))
-    return angle if side == "Right" else -angle
+    return angle if walk.side == "Right" else -angle
 
 
-def _moment(joint: str, signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
-    return -joint_signal(signals, joint, side, "torque_N_m") / mass
+def _moment(joint: str, walk: LegRecord) -> Array:
+    return -joint_signal(walk.signals, joint, walk.side, "torque_N_m") / walk.mass
 
 
-def _power(joint: str, signals: pa.Table, side: Side, mass: float, facing: Array | complex) -> Array:
-    torque, rate = (joint_signal(signals, joint, side, what) for what in ("torque_N_m", "velocity_rad_s"))
-    return torque * rate / mass
+def _power(joint: str, walk: LegRecord) -> Array:
+    torque, rate = (joint_signal(walk.signals, joint, walk.side, what) for what in ("torque_N_m", "velocity_rad_s"))
+    return torque * rate / walk.mass
 
 
 ANGLES = {
