@@ -229,7 +229,7 @@ class PhaseTransitions:
         if factor == 1.0 and preview.pace == 1.0:
             return state._replace(preview=preview)
         # A step that takes longer is not ahead by what the gait covers in that time.
-        gained = (factor - 1.0) * gait.displacement.on(state.stance).real
+        gained = (factor - 1.0) * abs(gait.displacement.on(state.stance).real)
         preview = preview._replace(ahead=max(preview.ahead - gained, 0.0))
         pace = preview.pace / factor
         return state._replace(

@@ -230,24 +230,25 @@ class FootholdPlanner:
             side: Its side.
             heading: Its heading [rad].
             gait: The desired gait.
-            ahead: Distance of the stance foot ahead of its place in the gait [m].
+            ahead: Distance of the stance foot ahead of its place in the gait [m], along the way of the gait.
             current: Face of the next foothold in the plan before; it is preferred, because the DCM goes there.
         """
         footholds, is_regular = [], True
+        sense = -1.0 if gait.displacement.right.real + gait.displacement.left.real < 0.0 else 1.0
         length = desired_length = first_ahead = 0.0
         for face in (current, *(None,) * (STEPS - 1)):
             direction = cmath.exp(1j * heading)
             step = gait.displacement.on(side)
             longest = self.pacing.longest_step(stance.face, self.com_height, abs(step.imag))
-            shortened = complex(clip(step.real - ahead, -longest, longest), step.imag)
+            shortened = complex(clip(step.real - sense * ahead, -longest, longest), step.imag)
             desired = stance.position + shortened * direction
             heading += gait.turn
             foothold = self.nearest(ground, desired, heading, stance, side, direction, face)
             is_regular &= foothold.position == desired and shortened == step
             footholds.append(foothold)
-            length += ((foothold.position - desired) / direction + shortened).real
-            desired_length += step.real
-            lead = ((foothold.position - desired) / direction).real
+            length += sense * ((foothold.position - desired) / direction + shortened).real
+            desired_length += sense * step.real
+            lead = sense * ((foothold.position - desired) / direction).real
             ahead = max(lead - self.pacing.free_lead * abs(step.real), 0.0)
             first_ahead = ahead if len(footholds) == 1 else first_ahead
             stance, side = foothold, other_side(side)

@@ -1,6 +1,7 @@
 """The next footholds: those of the gait on a plane, on faces elsewhere, with a speed and duration that suit them."""
 
 import cmath
+import math
 from dataclasses import replace
 from itertools import chain, pairwise, repeat
 
@@ -56,6 +57,21 @@ def test_on_boxes_longer_than_a_step_the_lead_is_made_up_for_or_free(free_lead: 
     planner = replace(PLANNER, pacing=replace(PACING, free_lead=free_lead))
     footholds = planner.preview(ground, Foothold.on(ground, 4.08 + 0.08j), "Left", 0.0, gait(0.32)).footholds
     assert [foothold.face.lower[0] for foothold in footholds] == pytest.approx(boxes)
+
+
+@given(st.floats(0.1, 0.6), st.floats(0.0, 0.04), st.integers(0, 100), st.floats(0.0, 0.1))
+def test_backward_steps_are_those_of_a_walker_that_faces_the_other_way(
+    length: float, height: float, seed: int, ahead: float
+) -> None:
+    ground = Course(pieces=(Rough(length=8.0, cell_size=0.4, height=height, seed=seed),), run_up=0.8)
+    sole = SoleExtent(back=0.13, front=0.13, half_width=0.048)
+    planner = replace(PLANNER, sole=sole, search=FootholdSearch(heel_room=0.0))
+    stance = Foothold.on(ground, 4.08 + 0.08j)
+    forward = planner.preview(ground, stance, "Left", 0.0, gait(length), ahead)
+    backward = planner.preview(ground, stance, "Right", math.pi, gait(-length), ahead)
+    places = ([foothold.position for foothold in preview.footholds] for preview in (forward, backward))
+    assert next(places) == pytest.approx(next(places))
+    assert (forward.pace, forward.ahead) == pytest.approx((backward.pace, backward.ahead))
 
 
 @pytest.mark.parametrize(
