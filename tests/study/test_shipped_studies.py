@@ -70,7 +70,7 @@ def test_every_point_of_a_shipped_study_is_valid(name: str) -> None:
         ("terrain_impairments", 160),
         ("terrain_turns", 36),
         ("terrain_commands", 40),
-        ("terrain_stairs_pushes", 64),
+        ("terrain_stairs_pushes", 128),
     ],
 )
 def test_tables_of_the_book_have_their_number_of_rows(name: str, number: int) -> None:
