@@ -21,8 +21,8 @@ def _named_fields(kind: type[Any]) -> dict[str, dataclasses.Field[Any]]:
 def override(kind: type[Any], data: dict[str, Any], field: str, text: Any) -> None:
     """Replace a value in the mapping of a dataclass of parameters by YAML text; see `replace_value`.
 
-    A value that is not a string, for example a number from Python, is used as it is; NumPy's numbers and arrays become
-    numbers and lists.
+    Only strings are read as YAML. NumPy scalars and arrays are converted to Python numbers and lists; other values are
+    used unchanged.
 
     Raises:
         ParameterError: the field is not text, the text is not YAML, or the field cannot be replaced.

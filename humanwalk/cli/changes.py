@@ -174,29 +174,29 @@ def overrides_of(pairs: list[str]) -> dict[str, str]:
     """Fields and values of --set.
 
     Raises:
-        ParameterError: A pair is not FIELD=VALUE, or undoes one before it.
+        ParameterError: A pair is not FIELD=VALUE, or replaces an earlier one.
     """
     overrides: dict[str, str] = {}
     for pair in pairs:
         key, equals, value = pair.partition("=")
         if not equals or not key:
             raise ParameterError(f"--set {pair}: not FIELD=VALUE; allowed: like controller.thesis.gait.ramp.speed=1.2")
-        for before in overrides:
-            if is_within(before, key):
+        for earlier in overrides:
+            if is_within(earlier, key):
                 raise ParameterError(
-                    f"--set {key}: undoes --set {before} before it; allowed: a field once, and its parts after it; "
-                    "leave one out"
+                    f"--set {key}: replaces the earlier --set {earlier}; allowed: each field once, or a group before a "
+                    "field in it; change the order, or remove one"
                 )
         overrides[key] = value
     return overrides
 
 
 def option_overrides(pairs: list[str], options: Mapping[str, str | float | None]) -> dict[str, str]:
-    """Overrides of options that stand for a field each, without those that are not given (None).
+    """Overrides of options that each set one field.
 
     Args:
         pairs: Those of --set.
-        options: Values by field name.
+        options: Values by field name; None for an option that is not given.
 
     Raises:
         ParameterError: A field of --set that an option replaces.

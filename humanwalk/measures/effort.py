@@ -50,7 +50,12 @@ def cost_of_transport(signals: pa.Table, rows: Mask, mass: float, distance: floa
 def joint_work(signals: pa.Table, strides: Sequence[tuple[int, int]]) -> dict[str, JointWork] | None:
     """Work of every joint per stride [J], delivered (positive) and absorbed (negative): integrals of torque x rate.
 
-    `strides` has the first and last row of each stride. Without strides the result is None.
+    Args:
+        signals: the record.
+        strides: first and last row of each stride.
+
+    Returns:
+        The work by joint; None if there are no strides.
     """
     if not strides:
         return None

@@ -57,7 +57,7 @@ class BaseOfSupport:
             if not low <= (value := getattr(self, name)) <= self.front:
                 raise ParameterError(
                     f"{name}: {value:g} is outside the base of support; allowed: {low:g} to {self.front:g} m; change "
-                    f"it, {limits}"
+                    f"{name}, {limits}"
                 )
 
     def correctable(self, error: complex, growth: float) -> complex:

@@ -230,7 +230,7 @@ class FootholdPlanner:
             side: Its side.
             heading: Its heading [rad].
             gait: The desired gait.
-            ahead: Distance of the stance foot ahead of its place in the gait [m], along the way of the gait.
+            ahead: Distance of the stance foot ahead of its place in the gait [m], in the direction of travel.
             current: Face of the next foothold in the plan before; it is preferred, because the DCM goes there.
         """
         footholds, is_regular = [], True

@@ -282,8 +282,11 @@ def test_shown_commands_call_the_program_as_it_was_called(
         (("--duration", "-1"), "duration"),
         (("--duration", "1", "--set", "duration=2"), "--set duration: another option replaces duration; allowed: one"),
         (("--look", "bones", "--set", "subject.look=person"), "--set subject.look: another option replaces"),
-        (("--set", "duration=1", "--set", "duration=2"), "--set duration: undoes --set duration before it"),
-        (("--set", "subject.mass=60", "--set", "subject={mass: 70}"), "--set subject: undoes --set subject.mass"),
+        (("--set", "duration=1", "--set", "duration=2"), "--set duration: replaces the earlier --set duration"),
+        (
+            ("--set", "subject.mass=60", "--set", "subject={mass: 70}"),
+            "--set subject: replaces the earlier --set subject.mass",
+        ),
         (("--duration", "nan"), "write a number"),
         (("--set", "controller.thesis.gait.path.offset=0.03"), "shorten the step"),
         (("--set", "controller.thesis.gait.path.toe_drop=0"), "Ankle"),
