@@ -14,7 +14,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from scipy.spatial.transform import Rotation
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.limbs import LEGS, PELVIS, other_side
+from humanwalk.body.limbs import LEGS, PELVIS
 from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.skeleton import Skeleton
@@ -32,7 +32,7 @@ from humanwalk.quantity import GRAVITY
 from humanwalk.run.live_view import is_lost
 from humanwalk.run.recorder import recorded_signals
 from humanwalk.scenario import load_scenario
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import SIDES, Side, other_side
 
 PERIOD = 0.005
 WEIGHT = 70.0 * GRAVITY

@@ -13,7 +13,7 @@ from humanwalk.body.model_text import number
 from humanwalk.body.shapes import Vector3
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.numerics import Array
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import OUTWARD, SIDES, Side
 
 SOLE_SET = "_sole_"
 """Part of the name of every sphere, and of no other collision shape."""
@@ -114,10 +114,9 @@ def contact_spheres(skeleton: Skeleton) -> tuple[ContactSphere, ...]:
     for side in SIDES:
         length, width, height = skeleton.size(f"{side}Leg_Ankle")
         radius = SPHERE_RADIUS * height
-        leftward = 1.0 if side == "Left" else -1.0
         for part in SOLE_PARTS:
             for place, outward in (("medial", -1.0), ("lateral", 1.0)):
-                y = leftward * outward * part.spheres_half_gap * width
+                y = OUTWARD[side] * outward * part.spheres_half_gap * width
                 body = f"{side}Leg_{part.body}"
                 center = _in_body(skeleton, side, body, (part.spheres_x * length, y, radius))
                 spheres.append(ContactSphere(f"{side}Leg{SOLE_SET}{part.name}_{place}", body, center, radius))

@@ -15,7 +15,7 @@ from humanwalk.body.skeleton import Joint, Segment, Skeleton, Weld
 from humanwalk.body.visual import Color, Visual, ball, capsule
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import ParameterError, quantity
-from humanwalk.sides import Side
+from humanwalk.sides import OUTWARD, Side
 
 SOCKET: Color = (0.80, 0.79, 0.75)
 METAL: Color = (0.55, 0.57, 0.60)
@@ -283,8 +283,8 @@ def _with_frame(skeleton: Skeleton, side: Side, body: str, end_joint: str, girth
         raise ParameterError(f"side: {body} already has a frame; allowed: one on each segment; remove one device")
     along, across, _ = skeleton.size(body)
     length = -skeleton.joint(end_joint).origin[2]
-    radius, outward = girth * across, 1.0 if side == "Left" else -1.0
-    y: float = outward * (radius + 0.012)
+    radius = girth * across
+    y: float = OUTWARD[side] * (radius + 0.012)
     top, end = 0.42 * length, -0.5 * length
     drawn = (
         capsule(name, "strut", (0.0, y, top), (0.0, y, end), 0.010, CARBON),

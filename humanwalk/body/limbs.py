@@ -119,11 +119,6 @@ HEAD_YAW = "Head_Motion"
 """Joint that turns the head; positive to the left."""
 
 
-def other_side(side: Side) -> Side:
-    """The other side of the body."""
-    return "Left" if side == "Right" else "Right"
-
-
 def _trunk_joints(*bodies: str, axis: Vector3 | None = None) -> tuple[str, ...]:
     return tuple(
         joint.name for joint in human().joints if joint.child.startswith(bodies) and axis in (None, joint.axis)

@@ -13,7 +13,7 @@ from humanwalk.body.shapes import Box, Cylinder, Shape, Vector3
 from humanwalk.body.skeleton import Segment, Skeleton, Weld
 from humanwalk.body.visual import Color, Visual, capsule, ellipsoid
 from humanwalk.quantity import quantity
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import OUTWARD, SIDES
 
 CLOTH: Color = (0.20, 0.36, 0.30)
 POCKET: Color = (0.26, 0.45, 0.38)
@@ -117,11 +117,11 @@ class Backpack:
                 POCKET,
             ),
         ]
-        for side, outward in (("right", -1.0), ("left", 1.0)):
+        for side, outward in OUTWARD.items():
             path = [(px * along - x, outward * py * across, pz * up - center[2]) for px, py, pz in STRAP_PATH]
             ends = ((0.5 * self.depth, *path[0][1:]), *path, (0.5 * self.depth, *path[-1][1:]))
             for i, (start, end) in enumerate(pairwise(ends)):
-                drawn.append(capsule("", f"{side}_strap_{i}", start, end, 0.014 * across, STRAP))
+                drawn.append(capsule("", f"{side.lower()}_strap_{i}", start, end, 0.014 * across, STRAP))
         yield LoadPart("Bag", "Ribs", center, Box(self.depth, self.width, self.height), self.mass, tuple(drawn))
 
 
@@ -211,7 +211,7 @@ class Suitcase:
 
     def parts(self, skeleton: Skeleton) -> Iterator[LoadPart]:
         hand = f"{self.side}Arm_Hand"
-        outward, grip = _outward(self.side), GRIP * skeleton.size(hand)[2]
+        outward, grip = OUTWARD[self.side], GRIP * skeleton.size(hand)[2]
         handle = 0.05
         center = (0.0, 0.3 * outward * self.width, -grip - handle - 0.5 * self.height)
         top, y = 0.5 * self.height, -center[1]
@@ -244,10 +244,6 @@ def loaded(skeleton: Skeleton, loads: Sequence[Load]) -> Skeleton:
             segments.append(Segment(name, part.shape, part.mass, (0.0, 0.0, 0.0), "carried load", drawn=drawn))
             welds.append(Weld(part.parent, name, part.center))
     return replace(skeleton, segments=tuple(segments), welds=tuple(welds))
-
-
-def _outward(side: Side) -> float:
-    return 1.0 if side == "Left" else -1.0
 
 
 def _box(part: str, center: Vector3, size: Vector3, color: Color) -> Visual:

@@ -12,12 +12,11 @@ from typing import TypedDict
 import numpy as np
 import pyarrow as pa
 
-from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import other_side
 from humanwalk.measures.effort import JointWork, joint_work
 from humanwalk.measures.events import FootEvents, events_of
 from humanwalk.measures.path import horizontal
 from humanwalk.numerics import Array, Mask
+from humanwalk.sides import OUTWARD, SIDES, Side, other_side
 
 
 class OfFeet(TypedDict):
@@ -112,8 +111,7 @@ def step_lengths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array)
 
 def step_widths(signals: pa.Table, side: Side, foot: FootEvents, facing: Array) -> Array:
     """How far the soles are apart sideways at this foot's touchdown [m]; negative if they are crossed."""
-    outward = 1.0 if side == "Left" else -1.0
-    return outward * _steps(signals, side, foot, facing).imag
+    return OUTWARD[side] * _steps(signals, side, foot, facing).imag
 
 
 def stance_shares(foot: FootEvents) -> Array:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import other_side
 from humanwalk.measures.curves import JOINTS, over_strides
 from humanwalk.measures.events import FootEvents
 from humanwalk.measures.gait_measures import (
@@ -21,6 +20,7 @@ from humanwalk.measures.gait_measures import (
 )
 from humanwalk.measures.walk_measures import Walk
 from humanwalk.numerics import Array
+from humanwalk.sides import other_side
 
 
 def symmetry_index(right: float | None, left: float | None) -> float | None:

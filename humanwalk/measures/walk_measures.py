@@ -12,7 +12,6 @@ import numpy as np
 import pyarrow as pa
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import other_side
 from humanwalk.measures.center_of_pressure import backward_travels, cop_paths
 from humanwalk.measures.curves import CURVES, late_stance_knee, over_strides
 from humanwalk.measures.effort import cost_of_transport
@@ -45,6 +44,7 @@ from humanwalk.measures.steady import steady_rows
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario
+from humanwalk.sides import other_side
 
 
 @dataclass(frozen=True)

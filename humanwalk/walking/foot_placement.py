@@ -8,12 +8,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from humanwalk.body import Side
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
-
-OUTWARD: dict[Side, float] = {"Left": -1.0, "Right": 1.0}
-"""Sign of y on the outer side of the swinging foot, by stance foot."""
+from humanwalk.sides import OUTWARD, Side, other_side
 
 SPEEDUP_SHARE = 0.95
 """Share of the largest step length beyond which the clock runs faster."""
@@ -95,7 +92,7 @@ class StepPlacement:
 
     def is_across(self, foot: complex, stance: Side) -> bool:
         """Whether a foot stands across the stance foot, or nearly so."""
-        return OUTWARD[stance] * foot.imag < self.min_own_side_offset
+        return OUTWARD[other_side(stance)] * foot.imag < self.min_own_side_offset
 
     def passing_waypoint(
         self, start: complex, way: Sequence[complex], stance: Side, toe_in: float
@@ -114,7 +111,7 @@ class StepPlacement:
         Returns:
             The waypoint, and its fraction of the line to the foothold; None if the way is clear.
         """
-        foot, foothold, outward = way[0], way[-1], OUTWARD[stance]
+        foot, foothold, outward = way[0], way[-1], OUTWARD[other_side(stance)]
         if foot.real * foothold.real >= 0.0:
             return None
         length = foot.real - foothold.real
@@ -134,7 +131,7 @@ class StepPlacement:
 
         Args: See `within_reach`.
         """
-        outward = OUTWARD[stance]
+        outward = OUTWARD[other_side(stance)]
         width = outward * desired.imag
         crossing = 0.0 if self.is_across(foot, stance) else -width
         return max(width - self.speedup_width, crossing, 0.0)
@@ -150,7 +147,7 @@ class StepPlacement:
         Returns:
             The foothold, and the distance by which the desired one calls for a faster clock [m].
         """
-        outward = OUTWARD[stance]
+        outward = OUTWARD[other_side(stance)]
         width = outward * desired.imag
         sideways_excess = max(self.min_width - self.speedup_crossing - width, width - self.speedup_width)
         excess = max(sideways_excess, abs(desired.real) - SPEEDUP_SHARE * self.max_length, 0.0)

@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.body.contact import SoleExtent, sole_extent
-from humanwalk.body.limbs import other_side
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.gait.foot_cycle import FootPathParameters, SwingCurve, swing_hump
 from humanwalk.gait.speed_ramp import SpeedRamp
@@ -28,7 +27,7 @@ from humanwalk.gait.walking_gait import FootTarget, GaitTarget, PelvisTarget, Wa
 from humanwalk.numerics import Array
 from humanwalk.numerics.scalars import clip, quintic_blend
 from humanwalk.quantity import ParameterError
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import SIDES, Side, other_side
 from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold, places_on

@@ -17,8 +17,8 @@ import math
 from typing import NamedTuple
 
 from humanwalk.body import Side
-from humanwalk.body.limbs import other_side
 from humanwalk.quantity import GRAVITY
+from humanwalk.sides import other_side
 
 
 def natural_frequency(height: float) -> float:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from humanwalk.body import SIDES, Side
-from humanwalk.body.limbs import other_side
+from humanwalk.sides import other_side
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.foot_references import foot_behind

@@ -7,8 +7,8 @@ import cmath
 from typing import NamedTuple
 
 from humanwalk.body import Side
-from humanwalk.body.limbs import other_side
 from humanwalk.numerics import Array
+from humanwalk.sides import other_side
 from humanwalk.terrain.plane import Plane
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.commanded_path import CommandedPath

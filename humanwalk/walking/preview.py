@@ -19,15 +19,14 @@ from dataclasses import dataclass
 from itertools import chain, repeat
 from typing import NamedTuple
 
-from humanwalk.body import Side
 from humanwalk.body.contact import SoleExtent
-from humanwalk.body.limbs import other_side
 from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import quantity
+from humanwalk.sides import OUTWARD, Side, other_side
 from humanwalk.terrain.face import Face
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
-from humanwalk.walking.foot_placement import OUTWARD, StepPlacement, foothold_gain
+from humanwalk.walking.foot_placement import StepPlacement, foothold_gain
 from humanwalk.walking.footholds import Foothold, FootholdSearch, nearest_foothold
 from humanwalk.walking.lipm import PeriodicGait
 
@@ -196,7 +195,7 @@ class FootholdPlanner:
             expected: Desired position when the foot lands [m].
             is_final: Whether the face does not change any more.
         """
-        desired_width = OUTWARD[side] * ((desired - stance.position) / direction).imag
+        desired_width = OUTWARD[other_side(side)] * ((desired - stance.position) / direction).imag
 
         def is_reachable(place: complex, height: float) -> bool:
             local = (place - stance.position) / direction
@@ -205,7 +204,7 @@ class FootholdPlanner:
             return (
                 abs(height - stance.ground) <= self.search.max_rise
                 and abs(local.real) <= self.placement.max_length
-                and OUTWARD[side] * local.imag >= min_width - 1e-9
+                and OUTWARD[other_side(side)] * local.imag >= min_width - 1e-9
             )
 
         return nearest_foothold(

@@ -13,12 +13,12 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
-from humanwalk.body import SIDES, Side
 from humanwalk.body.contact import SoleExtent
+from humanwalk.sides import OUTWARD, SIDES, Side
 from humanwalk.terrain.terrain import Ground
 from humanwalk.walking.command import Command
 from humanwalk.walking.counter_rotation import foot_lead
-from humanwalk.walking.foot_placement import OUTWARD, foothold_gain
+from humanwalk.walking.foot_placement import foothold_gain
 from humanwalk.walking.foot_references import foot_behind, stance_foot, stance_rollover, swinging_foot
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.height_planner import HeightPlanner, Touchdown
@@ -250,7 +250,7 @@ class StepPlanner:
             right=feet["Right"],
             left=feet["Left"],
             pelvis_yaw=facing - rotation.pelvis * lead,
-            pelvis_roll=-OUTWARD[state.stance] * rotation.drop_at(state.elapsed / timing.step, speed),
+            pelvis_roll=OUTWARD[state.stance] * rotation.drop_at(state.elapsed / timing.step, speed),
             chest_yaw=facing + rotation.chest * lead,
             shoulder_flexion=((right * lead, right * lead_rate), (-left * lead, -left * lead_rate)),
             head_yaw=(-rotation.head * lead, -rotation.head * lead_rate),

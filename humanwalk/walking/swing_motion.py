@@ -7,8 +7,8 @@ import math
 from typing import NamedTuple
 
 from humanwalk.numerics.scalars import wrapped
+from humanwalk.sides import OUTWARD
 from humanwalk.walking.command import Command
-from humanwalk.walking.foot_placement import OUTWARD
 from humanwalk.walking.footholds import Foothold
 from humanwalk.walking.motions import PlanarMotion, shortest_blend
 from humanwalk.walking.parameters import StepPlannerParameters
@@ -107,7 +107,7 @@ def _origin(state: PlannerState, swing: Swing, landing: Foothold) -> Foothold:
 
 def _inward(state: PlannerState, swing: Swing) -> float:
     """Angle by which the foot pointed toward the side of the stance foot at lift-off, relative to this step [rad]."""
-    return -OUTWARD[state.stance] * wrapped(swing.start_yaw - state.heading)
+    return OUTWARD[state.stance] * wrapped(swing.start_yaw - state.heading)
 
 
 def _moved(

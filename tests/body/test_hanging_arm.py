@@ -7,11 +7,10 @@ from hypothesis import strategies as st
 
 from humanwalk.body.carried_load import NO_LOAD
 from humanwalk.body.hanging_arm import hanging_arms
-from humanwalk.body.limbs import other_side
 from humanwalk.body.loads import Backpack, Suitcase
 from humanwalk.body.subject import Subject
 from humanwalk.numerics import Array
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import SIDES, Side, other_side
 
 MASSES, SIDE = st.floats(0.1, 30.0), st.sampled_from(SIDES)
 

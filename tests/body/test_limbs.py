@@ -4,7 +4,7 @@ import pytest
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body import SIDES, human
-from humanwalk.body.limbs import ARMS, CHEST, HEAD, JOINT_GROUPS, LEGS, PELVIS, group_of, other_side
+from humanwalk.body.limbs import ARMS, CHEST, HEAD, JOINT_GROUPS, LEGS, PELVIS, group_of
 from humanwalk.sides import Side
 
 
@@ -30,10 +30,6 @@ def test_bodies_are_of_the_model(plant: MultibodyPlant) -> None:
         assert all(plant.HasBodyNamed(body) for body in (leg.thigh, leg.shank, *leg.foot_bodies))
         assert plant.HasFrameNamed(leg.sole)
     assert all(plant.HasBodyNamed(body) for body in (PELVIS, CHEST, HEAD))
-
-
-def test_the_opposite_of_the_opposite_side_is_the_side() -> None:
-    assert all(other_side(other_side(side)) == side != other_side(side) for side in SIDES)
 
 
 def test_arm_joints_move_in_the_direction_of_their_names() -> None:

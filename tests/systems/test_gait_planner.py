@@ -8,9 +8,8 @@ from pydrake.systems.framework import Context
 
 from humanwalk.body.contact import SoleExtent
 from humanwalk.body.hanging_arm import hanging_arms
-from humanwalk.body.limbs import other_side
 from humanwalk.body.subject import Subject
-from humanwalk.sides import SIDES, Side
+from humanwalk.sides import SIDES, Side, other_side
 from humanwalk.systems.body_observer import BodyObserver
 from humanwalk.systems.gait_planner import GaitPlanner
 from humanwalk.terrain import Plane

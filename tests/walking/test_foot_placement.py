@@ -7,8 +7,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from humanwalk.sides import Side
-from humanwalk.walking.foot_placement import OUTWARD, StepPlacement, foothold_gain
+from humanwalk.sides import OUTWARD, Side, other_side
+from humanwalk.walking.foot_placement import StepPlacement, foothold_gain
 
 PLACEMENT = StepPlacement()
 sides = st.sampled_from(["Left", "Right"])
@@ -22,7 +22,7 @@ def test_a_foothold_is_within_reach_and_clear_of_the_stance_leg(
     x: float, y: float, stance: Side, place: complex
 ) -> None:
     foothold, excess = PLACEMENT.within_reach(complex(x, y), stance, place)
-    width = OUTWARD[stance] * foothold.imag
+    width = OUTWARD[other_side(stance)] * foothold.imag
     assert abs(foothold.real) <= PLACEMENT.max_length
     assert -PLACEMENT.max_crossover <= width <= PLACEMENT.max_width
     if abs(foothold.real) <= PLACEMENT.abreast:
@@ -56,10 +56,9 @@ def test_the_length_of_a_narrow_foothold_grows_by_half_of_the_missing_width(
 
 @given(st.floats(0.16, 0.9), sides)
 def test_a_foot_crosses_only_after_it_has_passed_the_stance_foot(x: float, stance: Side) -> None:
-    desired = complex(x, -OUTWARD[stance])
-    widths = [
-        OUTWARD[stance] * PLACEMENT.within_reach(desired, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)
-    ]
+    outward = OUTWARD[other_side(stance)]
+    desired = complex(x, -outward)
+    widths = [outward * PLACEMENT.within_reach(desired, stance, place)[0].imag for place in (-0.4, 0.0, 0.5 * x, x)]
     assert widths[:2] == [PLACEMENT.min_width] * 2
     assert PLACEMENT.min_width >= widths[2] >= widths[3] == PLACEMENT.min_step_width(x)
 
@@ -71,7 +70,7 @@ def test_the_minimum_width_decreases_with_the_distance_ahead_or_behind(x: float,
 
 @given(st.floats(-0.6, 0.7), st.floats(0.1, 0.29), sides)
 def test_a_foothold_within_reach_is_not_moved_and_keeps_the_clock(x: float, width: float, stance: Side) -> None:
-    desired = complex(x, OUTWARD[stance] * width)
+    desired = complex(x, OUTWARD[other_side(stance)] * width)
     assert PLACEMENT.within_reach(desired, stance, 0.0) == (desired, 0.0)
 
 
@@ -84,16 +83,17 @@ def test_footholds_across_wide_far_ahead_and_far_behind_call_for_a_faster_clock(
 def test_in_double_support_footholds_across_and_wide_ones_call_for_a_faster_clock(
     x: float, width: float, stance: Side
 ) -> None:
-    beside = complex(-0.4, OUTWARD[stance] * 0.15)
-    excess = PLACEMENT.double_support_excess(complex(x, OUTWARD[stance] * width), stance, beside)
+    outward = OUTWARD[other_side(stance)]
+    beside = complex(-0.4, outward * 0.15)
+    excess = PLACEMENT.double_support_excess(complex(x, outward * width), stance, beside)
     assert excess == pytest.approx(max(-width, width - PLACEMENT.speedup_width, 0.0))
 
 
 def test_a_foot_that_is_itself_across_does_not_hurry_to_cross() -> None:
-    for side, outward in OUTWARD.items():
+    for stance, outward in (("Right", 1.0), ("Left", -1.0)):
         across = complex(-0.4, -0.05 * outward)
-        assert PLACEMENT.double_support_excess(-1j * outward, side, across) == 0.0
-        assert PLACEMENT.double_support_excess(1j * outward, side, across) > 0.0
+        assert PLACEMENT.double_support_excess(-1j * outward, stance, across) == 0.0
+        assert PLACEMENT.double_support_excess(1j * outward, stance, across) > 0.0
 
 
 def test_left_and_right_are_mirror_images() -> None:
@@ -116,7 +116,7 @@ ways = st.tuples(st.floats(-0.6, 0.6), st.floats(-0.2, 0.3), st.floats(-0.6, 0.6
 def test_only_a_foot_whose_way_or_straight_way_would_hit_the_stance_foot_has_a_waypoint(
     start: float, ends: tuple[float, float, float, float], bend: float, toe_in: float, stance: Side
 ) -> None:
-    outward = OUTWARD[stance]
+    outward = OUTWARD[other_side(stance)]
     x, width, goal, goal_width = ends
     share = np.linspace(0.0, 1.0, 9)
     along, across = x + share * (goal - x), width + share * (goal_width - width) - bend * np.sin(np.pi * share)

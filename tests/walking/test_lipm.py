@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from humanwalk.body import SIDES
-from humanwalk.body.limbs import other_side
+from humanwalk.sides import other_side
 from humanwalk.walking.lipm import (
     PeriodicGait,
     PerStance,

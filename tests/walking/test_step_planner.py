@@ -12,15 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from humanwalk.body import SIDES
 from humanwalk.body.contact import SoleExtent
-from humanwalk.body.limbs import other_side
 from humanwalk.numerics import Array
+from humanwalk.sides import OUTWARD, SIDES, other_side
 from humanwalk.terrain import Course, Plane
 from humanwalk.terrain.rough import Rough
 from humanwalk.terrain.steps import Stairs
 from humanwalk.walking.command import Command
-from humanwalk.walking.foot_placement import OUTWARD
 from humanwalk.walking.motions import ScalarMotion
 from humanwalk.walking.parameters import StepPlannerParameters
 from humanwalk.walking.planner_state import PlannerState
@@ -321,7 +319,10 @@ def test_on_boxes_a_foot_is_on_its_way_to_the_box_on_which_it_will_step_across(t
     stance, states = next(groupby(pushed, key=lambda state: state.stance))
     last = [state for state in states if state.swing is not None][-1]
     assert last.swing is not None
-    assert OUTWARD[stance] * last.local(last.swing.foothold.position).imag < PARAMETERS.placement.min_own_side_offset
+    assert (
+        OUTWARD[other_side(stance)] * last.local(last.swing.foothold.position).imag
+        < PARAMETERS.placement.min_own_side_offset
+    )
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
@@ -329,7 +330,7 @@ def test_in_double_support_the_clock_runs_faster_in_proportion_to_the_load_of_th
     """A foot that left while it carries the weight would let the body fall."""
     walk = pendulum_walk(planner(), walk_at(0.8), 3.0)
     state, body = next((s, b) for t, s, _, b in walk if t > 2.0 and s.phase is Phase.DOUBLE_SUPPORT and s.elapsed > 0.0)
-    pushed = replace(body, com_velocity=body.com_velocity - OUTWARD[state.stance] * 1j)
+    pushed = replace(body, com_velocity=body.com_velocity + OUTWARD[state.stance] * 1j)
     loads = {state.stance: share * 700.0, state.swing_side: (1.0 - share) * 700.0}
     right, left = (replace(pushed.foot(side), force=loads[side]) for side in SIDES)
     advance = planner().update(state, replace(pushed, right=right, left=left), WALK)[0].elapsed - state.elapsed
