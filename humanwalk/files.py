@@ -204,6 +204,23 @@ def make_folder(path: Path) -> list[Path]:
     return made
 
 
+def require_empty(
+    folder: Path, allowed: str = "a new or empty folder", is_ours: Callable[[str], bool] = lambda name: False
+) -> None:
+    """Raise ParameterError for a folder that holds files.
+
+    Args:
+        folder: chosen with -o.
+        allowed: what it may be.
+        is_ours: whether it may hold a file of this name.
+    """
+    with file_errors(folder, WRITABLE):
+        if not all(is_ours(entry.name) for entry in folder.iterdir()):
+            raise ParameterError(
+                f"-o {printable(folder)}: holds files already; allowed: {allowed}; choose another, or remove it first"
+            )
+
+
 def _require_writable(folder: Path) -> None:
     """Raise OSError unless files can be made in a folder."""
     with tempfile.NamedTemporaryFile(dir=folder, prefix="." + "x" * TEMPORARY_NAME):

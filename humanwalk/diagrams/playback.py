@@ -1,13 +1,10 @@
 """Kinematic playback as a Diagram: reference and picture, no physics."""
 
 import numpy as np
-from pydrake.geometry import SceneGraph
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 
-from humanwalk.body.plant import add_human
 from humanwalk.choices.world import World
+from humanwalk.diagrams.picture import add_picture
 from humanwalk.diagrams.world import built
 from humanwalk.scenario import Scenario, require_scenario
 from humanwalk.systems.body_observer import BodyObserver
@@ -27,19 +24,13 @@ def make_playback(scenario: Scenario) -> Diagram:
     """
     require_scenario(scenario, "make_playback")
     builder = DiagramBuilder()
-    scene_graph = builder.AddNamedSystem("scene_graph", SceneGraph())
-    # The plant only places the geometry; it is not part of the diagram.
-    plant = MultibodyPlant(time_step=0.0)
-    source = plant.RegisterAsSourceForSceneGraph(scene_graph)
-    instance = add_human(plant, scenario.subject)
-    scenario.terrain.add_to(plant, scenario.contact.ground_properties)
-    plant.Finalize()
-    none = np.zeros(plant.num_actuators())
+    picture = add_picture(builder, scenario)
+    plant, none = picture.plant, np.zeros(picture.plant.num_actuators())
     world = World(
         builder=builder,
         plant=plant,
-        instance=instance,
-        scene_graph=scene_graph,
+        instance=picture.instance,
+        scene_graph=picture.scene_graph,
         subject=scenario.subject,
         terrain=scenario.terrain,
         start=scenario.start,
@@ -54,7 +45,5 @@ def make_playback(scenario: Scenario) -> Diagram:
     )
     state = playback.GetOutputPort("state")
     world.add("body_observer", BodyObserver(plant), state=state)
-    to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
-    builder.Connect(state, to_pose.get_input_port())
-    builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(source))
-    return built(world, "playback", state=state, query_object=scene_graph.get_query_output_port())
+    builder.Connect(state, picture.state)
+    return built(world, "playback", state=state, query_object=picture.scene_graph.get_query_output_port())

@@ -3,14 +3,11 @@
 from collections.abc import Mapping
 
 import numpy as np
-from pydrake.geometry import SceneGraph
-from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import TrajectorySource
-from pydrake.systems.rendering import MultibodyPositionToGeometryPose
 from pydrake.trajectories import PiecewisePolynomial
 
-from humanwalk.body.plant import add_human
+from humanwalk.diagrams.picture import add_picture
 from humanwalk.numerics import Array
 from humanwalk.scenario import Scenario
 
@@ -27,20 +24,12 @@ def make_replay(scenario: Scenario, time: Array, state: Array, forces: Mapping[s
     Exported outputs: query_object, and every name in `forces`.
     """
     builder = DiagramBuilder()
-    scene_graph = builder.AddNamedSystem("scene_graph", SceneGraph())
-    # The plant only places the geometry; it is not part of the diagram.
-    plant = MultibodyPlant(time_step=0.0)
-    source = plant.RegisterAsSourceForSceneGraph(scene_graph)
-    add_human(plant, scenario.subject)
-    scenario.terrain.add_to(plant, scenario.contact.ground_properties)
-    plant.Finalize()
+    picture = add_picture(builder, scenario)
     motion = builder.AddNamedSystem(
         "state", TrajectorySource(PiecewisePolynomial.FirstOrderHold(time.tolist(), _vectors(state)))
     )
-    to_pose = builder.AddNamedSystem("to_pose", MultibodyPositionToGeometryPose(plant, input_multibody_state=True))
-    builder.Connect(motion.get_output_port(), to_pose.get_input_port())
-    builder.Connect(to_pose.get_output_port(), scene_graph.get_source_pose_port(source))
-    builder.ExportOutput(scene_graph.get_query_output_port(), "query_object")
+    builder.Connect(motion.get_output_port(), picture.state)
+    builder.ExportOutput(picture.scene_graph.get_query_output_port(), "query_object")
     for name, values in forces.items():
         held = PiecewisePolynomial.ZeroOrderHold(time.tolist(), _vectors(values))
         builder.ExportOutput(builder.AddNamedSystem(name, TrajectorySource(held)).get_output_port(), name)

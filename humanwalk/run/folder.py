@@ -23,6 +23,7 @@ from humanwalk.files import (
     locked,
     make_folder,
     read_regular,
+    require_empty,
     require_inside,
     write_set,
     write_text,
@@ -193,12 +194,7 @@ def new_run_folder(wanted: Path | None, otherwise: Path) -> tuple[Path, list[Pat
     """
     if wanted is not None:
         made = make_folder(wanted)
-        with file_errors(wanted, WRITABLE):
-            if any(wanted.iterdir()):
-                raise ParameterError(
-                    f"-o {printable(wanted)}: holds files already; allowed: a new or empty folder; choose another, or "
-                    "remove it first"
-                )
+        require_empty(wanted)
         return wanted, made
     number = 1
     while True:

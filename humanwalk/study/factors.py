@@ -71,25 +71,31 @@ class Values(Factor):
 
 
 @dataclass(frozen=True)
-class Range(Factor):
-    """Equally spaced numbers from low to high; samples are uniformly distributed between them."""
+class Uniform(Factor):
+    """A uniform distribution between low and high."""
 
     low: float
     high: float
-    number: int = quantity(5, "", 2, MAX_LEVELS)
 
     def __post_init__(self) -> None:
         """Raise ParameterError unless low < high."""
         _require_order(self.low, self.high)
+
+    def quantiles(self, shares: Array) -> list[Any]:
+        return [self.low + u * (self.high - self.low) for u in shares.tolist()]
+
+
+@dataclass(frozen=True)
+class Range(Uniform):
+    """Equally spaced numbers from low to high; samples are uniformly distributed between them."""
+
+    number: int = quantity(5, "", 2, MAX_LEVELS)
 
     def levels(self) -> Sequence[Any]:
         return _rounded(np.linspace(self.low, self.high, self.number))
 
     def level_count(self) -> int:
         return self.number
-
-    def quantiles(self, shares: Array) -> list[Any]:
-        return [self.low + u * (self.high - self.low) for u in shares.tolist()]
 
 
 @dataclass(frozen=True)
@@ -114,21 +120,6 @@ class LogRange(Factor):
 
     def quantiles(self, shares: Array) -> list[Any]:
         return [float(self.low * (self.high / self.low) ** u) for u in shares.tolist()]
-
-
-@dataclass(frozen=True)
-class Uniform(Factor):
-    """A uniform distribution between low and high."""
-
-    low: float
-    high: float
-
-    def __post_init__(self) -> None:
-        """Raise ParameterError unless low < high."""
-        _require_order(self.low, self.high)
-
-    def quantiles(self, shares: Array) -> list[Any]:
-        return [self.low + u * (self.high - self.low) for u in shares.tolist()]
 
 
 @dataclass(frozen=True)

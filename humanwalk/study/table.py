@@ -20,12 +20,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from humanwalk.files import (
-    WRITABLE,
-    file_errors,
     file_of,
     locked,
     make_folder,
     read_regular,
+    require_empty,
     require_inside,
     write_text,
     write_whole,
@@ -217,12 +216,12 @@ def _require_same(folder: Path, study: Study) -> None:
                 "resumes; choose another"
             )
         return
-    with file_errors(folder, WRITABLE):
-        if any(not entry.name.startswith(".") for entry in folder.iterdir() if entry.name != POINTS):
-            raise ParameterError(
-                f"-o {printable(folder)}: holds files already; allowed: a new or empty folder, or that of the same "
-                "study; choose another, or remove it first"
-            )
+    # A study that was killed while it was made leaves its points, or a hidden file.
+    require_empty(
+        folder,
+        "a new or empty folder, or that of the same study",
+        lambda name: name == POINTS or name.startswith("."),
+    )
     if isinstance(study.design, Rows):
         content = read_regular(Path(study.design.file), MAX_CSV_BYTES)
         write_whole(folder / POINTS, lambda beside: beside.write_bytes(content))

@@ -16,7 +16,14 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from humanwalk.files import WRITABLE, file_errors, file_of, locked, make_folder, require_inside, write_text
+from humanwalk.files import (
+    file_of,
+    locked,
+    make_folder,
+    require_empty,
+    require_inside,
+    write_text,
+)
 from humanwalk.measures.ends import COMPLETED
 from humanwalk.parameter_file import MAX_KEPT_SIZE, read_fields
 from humanwalk.quantity import ParameterError, printable
@@ -134,12 +141,7 @@ def _claim(folder: Path, tuning: Tuning) -> None:
         if (folder / TRIALS).exists():
             _rows(folder, tuning)
     else:
-        with file_errors(folder, WRITABLE):
-            if any(not entry.name.startswith(".") for entry in folder.iterdir()):
-                raise ParameterError(
-                    f"-o {printable(folder)}: holds files already; allowed: a new or empty folder, or that of the same "
-                    "tuning; choose another, or remove it first"
-                )
+        require_empty(folder, "a new or empty folder, or that of the same tuning", lambda name: name.startswith("."))
     write_text(folder / TUNING, dump_tuning(tuning))
 
 
