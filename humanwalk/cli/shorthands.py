@@ -5,7 +5,7 @@ import inspect
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 from humanwalk.body.devices import DEVICES
@@ -46,8 +46,6 @@ LOAD = re.compile(
     rf"(?: \s+ in \s+ the \s+ (?P<side>right|left) \s+ hand)? (?: \s+ (?P<unknown>unknown))?",
     re.VERBOSE,
 )
-FIELD = re.compile(rf"(?P<name>[A-Za-z_][A-Za-z_ ]*?)\s+(?:(?P<number>{NUMBER})\s*(?P<unit>\S*)|(?P<word>\S+))")
-
 THEN = re.compile(r"\s+then\s+")
 
 PART = re.compile(
@@ -99,7 +97,7 @@ def push_of(text: str) -> Push:
     direction = math.remainder(math.radians(bearing + 180.0), 2.0 * math.pi)
     numbers = {name: float(found[name]) for name in ("impulse", "time", "duration") if found[name]}
     for name, number in numbers.items():
-        _require_allowed(f"--push {text}", _fields(Push)[name], number)
+        _require_allowed(f"--push {printable(text)}", _fields(Push)[name], number)
     return Push(direction=direction, body=found["body"] or Push.body, **numbers)
 
 
@@ -121,7 +119,7 @@ def _load(text: str) -> dict[str, dict[str, Any]]:
             f'it like "{LOAD_EXAMPLE}"{did_you_mean(tag, tuple(LOADS))}'
         )
     fields: dict[str, Any] = {"mass": float(found["mass"]), "known": found["unknown"] is None}
-    _require_allowed(f"--load {text}", _fields(LOADS[tag])["mass"], fields["mass"])
+    _require_allowed(f"--load {printable(text)}", _fields(LOADS[tag])["mass"], fields["mass"])
     if found["side"]:
         fields["side"] = found["side"].capitalize()
     return {tag: fields}
@@ -152,7 +150,7 @@ def _subject_part(text: str, name: str, kinds: Mapping[str, type[Any]]) -> dict[
 
 
 def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, grammar: str) -> dict[str, dict[str, Any]]:
-    """One of several kinds by its text; a value without a field is that of the first quantity that the kind declares.
+    """One of several kinds by its text.
 
     Args:
         text: Of the part.
@@ -166,43 +164,62 @@ def _part(text: str, option: str, kinds: Mapping[str, type[Any]], noun: str, gra
     if not tag:
         near = did_you_mean("_".join(text.replace("_", " ").split()[:2]), tuple(kinds))
         raise ParameterError(f"{option} {printable(text)}: no such kind; {end}; write one of them{near}")
-    known = _fields(kinds[tag])
-    own = [name for name in inspect.get_annotations(kinds[tag]) if name in known]
+    return {tag: _values(text.strip()[len(tag) :].lstrip("_"), tag, kinds[tag], f"{option} {printable(text)}", end)}
+
+
+def _values(items: str, tag: str, kind: type[Any], where: str, end: str) -> dict[str, Any]:
+    """Fields of one kind by their text; a value without a field is that of the first quantity that the kind declares.
+
+    Args:
+        items: "[FIELD] VALUE [UNIT], ...".
+        tag: Of the kind, for messages.
+        kind: Whose fields they are.
+        where: Begin of messages: option and text.
+        end: Of messages: what is allowed.
+    """
+    known = _fields(kind)
+    own = [name for name in inspect.get_annotations(kind) if name in known]
     first = next(name for name in (*own, *known) if "unit" in known[name].metadata)
     fields: dict[str, Any] = {}
-    for item in text.strip()[len(tag) :].lstrip("_").split(","):
+    for item in items.split(","):
         words = {word: WORDS[word] for word in item.split() if word in WORDS and WORDS[word][0] in known}
         said = list(words.values())
         for name, value in said:
-            _give(fields, name, value, f"{option} {text}")
+            _give(fields, name, value, where)
         rest = " ".join(word for word in item.split() if word not in words)
         if not rest or rest in dict(said):
             continue
         found = PART.fullmatch(rest)
-        name = "_".join(found["name"].split()) if found else ""
+        name = _name_in(rest)
         if found and found["number"]:
             name = name or first
         if not found or name not in known:
             raise ParameterError(
-                f"{option} {printable(text)}: {printable(rest)} is not FIELD VALUE of {tag}, which has "
+                f"{where}: {printable(rest)} is not FIELD VALUE of {tag}, which has "
                 f"{', '.join(known)}; {end}; correct it{did_you_mean(name, tuple(known))}"
             )
         unit = known[name].metadata.get("unit", "")
         factors, written = UNITS.get(unit, {unit: 1.0}), (found["unit"] or "").strip() or unit
         if found["word"]:
-            _give(fields, name, found["word"], f"{option} {text}")
+            _give(fields, name, found["word"], where)
         elif written in factors:
             value = float(found["number"]) * factors[written]
             if found["unit"].strip():
-                _require_allowed(f"{option} {text}", known[name], value)
+                _require_allowed(where, known[name], value)
             whole = not unit and value.is_integer()
-            _give(fields, name, int(value) if whole else value, f"{option} {text}")
+            _give(fields, name, int(value) if whole else value, where)
         else:
             raise ParameterError(
-                f"{option} {printable(text)}: {printable(written)} is no unit of {name}; allowed: "
-                f"{' or '.join(factors) or 'no unit'}; correct it"
+                f"{where}: {printable(written)} is no unit of {name}, which has "
+                f"{' or '.join(factors) or 'none'}; {end}; correct it"
             )
-    return {tag: fields}
+    return fields
+
+
+def _name_in(item: str) -> str:
+    """Name of the field of "[FIELD] VALUE [UNIT]"; empty without one."""
+    found = PART.fullmatch(item.strip())
+    return "_".join(found["name"].split()) if found else ""
 
 
 def _give(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
@@ -212,7 +229,7 @@ def _give(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
         ParameterError: it has one.
     """
     if name in fields:
-        raise ParameterError(f"{printable(where)}: {name} is given twice; allowed: every field once; remove one")
+        raise ParameterError(f"{where}: {name} is given twice; allowed: every field once; remove one")
     fields[name] = value
 
 
@@ -233,64 +250,32 @@ def terrain_overrides(text: str) -> dict[str, str]:
     if len(pieces) > 1 or _kind_of(text, PIECES) not in ("", *_fields(TERRAINS["plane"])):
         parts = [_part(piece, "--terrain", PIECES, "PIECE", TERRAIN_GRAMMAR) for piece in pieces]
         return {"terrain": json.dumps({"course": {"pieces": parts}})}
-    first, *others = text.split(",")
-    tag, _, after_tag = first.strip().partition(" ")
-    if tag not in TERRAINS:
-        if not after_tag:
-            raise _terrain_error(text, f"no such terrain{did_you_mean(tag, (*TERRAINS, *PIECES))}")
-        tag, after_tag = "", first
-    fields: dict[str, tuple[Any, str]] = {}
-    for item in (after_tag, *others):
-        if item.strip():
-            _give(fields, *_field(item, text), f"--terrain {text}")
-    tag = tag or _terrain_with(fields, text)
-    known = _fields(TERRAINS[tag])
-    for name in fields:
-        if name not in known:
-            raise _terrain_error(
-                text, f"{tag} has no field {name}, but {', '.join(known)}{did_you_mean(name, tuple(known))}"
-            )
-    values = {name: _in_unit(*written, known[name], text) for name, written in fields.items()}
-    return {"terrain": json.dumps({tag: values})}
+    where = f"--terrain {printable(text)}"
+    end = f"allowed: {TERRAIN_GRAMMAR} with TERRAIN one of {', '.join(TERRAINS)} and PIECE one of {', '.join(PIECES)}"
+    tag = _kind_of(text, TERRAINS)
+    items = text.strip()[len(tag) :]
+    if not tag:
+        tag = _terrain_with({_name_in(item) or item.strip() for item in items.split(",")}, where, end)
+    return {"terrain": json.dumps({tag: _values(items, tag, TERRAINS[tag], where, end)})}
 
 
-def _field(item: str, text: str) -> tuple[str, tuple[Any, str]]:
-    """Name of a field, and its value and unit."""
-    found = FIELD.fullmatch(item.strip())
-    if found is None:
-        raise _terrain_error(text, f"{printable(item.strip())} is not FIELD VALUE")
-    name = "_".join(found["name"].split())
-    return name, (found["word"] if found["number"] is None else float(found["number"]), found["unit"] or "")
-
-
-def _terrain_with(names: Mapping[str, Any], text: str) -> str:
-    """The only terrain that has all of the fields."""
+def _terrain_with(names: Set[str], where: str, end: str) -> str:
+    """The only terrain that has all of the fields; `where` and `end` are those of messages."""
     fields = {tag: _fields(kind) for tag, kind in TERRAINS.items()}
-    having = [tag for tag, known in fields.items() if names.keys() <= known.keys()]
+    having = [tag for tag, known in fields.items() if names <= known.keys()]
     if len(having) > 1:
-        raise _terrain_error(text, f"{' and '.join(having)} have these fields; begin with one of them")
+        raise ParameterError(f"{where}: {' and '.join(having)} have these fields; {end}; begin with one of them")
     if not having:
-        every = sorted({name for known in fields.values() for name in known})
-        near = "".join(did_you_mean(name, every) for name in names if name not in every)
-        raise _terrain_error(text, f"no terrain has these fields{near}")
+        every = (*TERRAINS, *PIECES, *sorted({name for known in fields.values() for name in known}))
+        near = "".join(did_you_mean(name, every) for name in sorted(names) if name not in every)
+        raise ParameterError(
+            f'{where}: no such terrain, and none has these fields; {end}; write it like "{TERRAIN_EXAMPLES[0]}"{near}'
+        )
     return having[0]
 
 
 def _fields(terrain: Any) -> dict[str, dataclasses.Field[Any]]:
     return {field.name: field for field in dataclasses.fields(terrain)}
-
-
-def _in_unit(value: Any, written: str, field: dataclasses.Field[Any], text: str) -> Any:
-    """A value in the unit of its field."""
-    if not written:
-        return value
-    unit = field.metadata.get("unit", "")
-    units = UNITS.get(unit, {unit: 1.0} if unit else {})
-    if written not in units:
-        raise _terrain_error(text, f"{printable(written)} is no unit of it; write {' or '.join(units) or 'no unit'}")
-    converted = value * units[written]
-    _require_allowed(f"--terrain {text}", field, converted)
-    return converted
 
 
 def _require_allowed(where: str, field: dataclasses.Field[Any], value: float) -> None:
@@ -299,11 +284,4 @@ def _require_allowed(where: str, field: dataclasses.Field[Any], value: float) ->
     Where the scenario is checked, the unit is no longer known: the message there may take the value for one in another.
     """
     unit, low, high = (field.metadata[key] for key in ("unit", "low", "high"))
-    require_in_range(f"{printable(where)}: {field.name}", value, unit, low, high, other_units=False)
-
-
-def _terrain_error(text: str, problem: str) -> ParameterError:
-    return ParameterError(
-        f"--terrain {printable(text)}: {problem}; allowed: {TERRAIN_GRAMMAR} with TERRAIN one of "
-        f'{", ".join(TERRAINS)} and PIECE one of {", ".join(PIECES)}; write it like "{TERRAIN_EXAMPLES[0]}"'
-    )
+    require_in_range(f"{where}: {field.name}", value, unit, low, high, other_units=False)

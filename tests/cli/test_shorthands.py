@@ -156,9 +156,9 @@ def test_a_terrain_is_read_from_its_words(text: str, terrain: Plane) -> None:
         ("plain", "did you mean plane"),
         ("slop 3 deg", "did you mean slope"),
         ("plane friction 0.5", "did you mean friction_coefficient"),
-        ("slope 3 furlongs", "furlongs is no unit of it; write rad or deg"),
-        ("friction coefficient 0.5", "plane and course have these fields; begin with one of them"),
-        ("plane friction coefficient 0.5 kg", "kg is no unit of it; write no unit"),
+        ("slope 3 furlongs", "furlongs is no unit of slope, which has rad or deg"),
+        ("friction coefficient 0.5", "plane and course have these fields; .* begin with one of them"),
+        ("plane friction coefficient 0.5 kg", "kg is no unit of friction_coefficient, which has none"),
         ("plane slope", "slope is not FIELD VALUE"),
         ("", "no such terrain"),
     ],
@@ -198,7 +198,7 @@ def test_every_piece_can_be_written(tag: str) -> None:
         ("stairs then stares", "no such kind; allowed: .* did you mean stairs"),
         ("obstacle high 20 cm", "high 20 cm is not FIELD VALUE of obstacle, which has .*height"),
         ("stairs sideways", "sideways is not FIELD VALUE of stairs, which has .*direction"),
-        ("curb 12 furlongs", "furlongs is no unit of height; allowed: m or cm or mm"),
+        ("curb 12 furlongs", "furlongs is no unit of height, which has m or cm or mm"),
         ("obstacle down", "down is not FIELD VALUE of obstacle"),
         ("slope down 3 deg then flat", "down 3 deg is not FIELD VALUE of slope, which has"),
         ("curb -12 cm", r"--terrain curb -12 cm: height: -0.12 is out of range"),
@@ -216,7 +216,7 @@ def test_a_field_of_several_terrains_needs_the_terrain(monkeypatch: pytest.Monke
         height_of_hills: float = quantity(0.1, "m", 0.0, 1.0)
 
     monkeypatch.setitem(TERRAINS, "hills", Hills)
-    with pytest.raises(ParameterError, match="plane and hills have these fields; begin with one of them"):
+    with pytest.raises(ParameterError, match=r"plane and hills have these fields; .* begin with one of them"):
         terrain_overrides("slope 3 deg")
     assert changed(terrain="height_of_hills 20 cm").terrain == Hills(height_of_hills=0.2)
 
@@ -324,8 +324,8 @@ def test_impairments_and_devices_are_described() -> None:
     ("text", "message"),
     [
         ("stif knee", "did you mean stiff_knee"),
-        ("short leg 3 km", "km is no unit of shortening; allowed: m or cm or mm"),
-        ("weak plantarflexors both strength 60 %", "% is no unit of strength; allowed: no unit; correct it"),
+        ("short leg 3 km", "km is no unit of shortening, which has m or cm or mm"),
+        ("weak plantarflexors both strength 60 %", "% is no unit of strength, which has none; allowed: IMPAIRMENT"),
         ("stiff knee bend 3", "bend 3 is not FIELD VALUE of stiff_knee, which has angle, play, side, known"),
     ],
 )
