@@ -18,7 +18,7 @@ from humanwalk.measures.gait_measures import (
     step_times,
     step_widths,
 )
-from humanwalk.measures.walk_measures import Walk
+from humanwalk.measures.walk_measures import MOMENT_PEAKS, Walk
 from humanwalk.numerics import Array
 from humanwalk.sides import other_side
 
@@ -71,15 +71,6 @@ def _peak_force(walk: Walk, side: Side, foot: FootEvents) -> Array:
     return over_strides(foot, walk.forces[side]).max(axis=1)
 
 
-SENSES = (
-    ("hip", "extensor", 1.0),
-    ("hip", "flexor", -1.0),
-    ("knee", "extensor", 1.0),
-    ("knee", "flexor", -1.0),
-    ("ankle", "plantarflexor", 1.0),
-)
-"""Peaks of the moments: joint, sense and its sign in the curves of MOMENTS."""
-
 MEASURES_OF_LEGS: dict[str, tuple[str, OfFoot]] = {
     "step time": ("s", lambda walk, side, foot: step_times(foot, walk.feet[other_side(side)])),
     "step length": ("m", lambda walk, side, foot: step_lengths(walk.signals, side, foot, walk.facing)),
@@ -87,7 +78,10 @@ MEASURES_OF_LEGS: dict[str, tuple[str, OfFoot]] = {
     "stance, share of the stride": ("", lambda walk, side, foot: stance_shares(foot)),
     "peak vertical force": ("BW", _peak_force),
     **{f"{joint} range of motion": ("deg", _range_of(joint)) for joint in JOINTS},
-    **{f"{joint} peak {sense} moment": ("N m/kg", _peak_of(f"{joint} moment", sign)) for joint, sense, sign in SENSES},
+    **{
+        f"{joint} peak {sense} moment": ("N m/kg", _peak_of(f"{joint} moment", sign))
+        for joint, sense, sign in MOMENT_PEAKS
+    },
     **{f"{joint} peak power": ("W/kg", _peak_of(f"{joint} power", 1.0)) for joint in JOINTS},
     **{f"{joint} peak absorbed power": ("W/kg", _peak_of(f"{joint} power", -1.0)) for joint in JOINTS},
 }

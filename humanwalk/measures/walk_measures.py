@@ -46,6 +46,16 @@ from humanwalk.quantity import GRAVITY
 from humanwalk.scenario import Scenario
 from humanwalk.sides import other_side
 
+MOMENT_PEAKS = (
+    ("hip", "flexion", -1.0),
+    ("hip", "extension", 1.0),
+    ("knee", "flexion", -1.0),
+    ("knee", "extension", 1.0),
+    ("ankle", "dorsiflexion", -1.0),
+    ("ankle", "plantarflexion", 1.0),
+)
+"""Peaks of the internal moments: joint, direction of the moment, and its sign in the curves of MOMENTS."""
+
 
 @dataclass(frozen=True)
 class Walk:
@@ -203,8 +213,8 @@ def _com_range(direction: str, axis: str) -> MeasureKind:
     )
 
 
-def _peak_moment(joint: str, sense: str, sign: int) -> MeasureKind:
-    """Greatest internal moment in every stride; the curves of MOMENTS are positive in extension and plantarflexion."""
+def _peak_moment(joint: str, sense: str, sign: float) -> MeasureKind:
+    """Greatest internal moment in every stride; see `MOMENT_PEAKS`."""
     return MeasureKind(
         f"moment, {joint} {sense}", "N m/kg", lambda walk: (sign * walk.strides(f"{joint} moment")).max(axis=1)
     )
@@ -259,11 +269,6 @@ MEASURES: tuple[MeasureKind, ...] = (
         people_late_stance_knee,
     ),
     MeasureKind("cost of transport", "", _cost),
-    _peak_moment("hip", "flexion", -1),
-    _peak_moment("hip", "extension", 1),
-    _peak_moment("knee", "flexion", -1),
-    _peak_moment("knee", "extension", 1),
-    _peak_moment("ankle", "dorsiflexion", -1),
-    _peak_moment("ankle", "plantarflexion", 1),
+    *(_peak_moment(joint, sense, sign) for joint, sense, sign in MOMENT_PEAKS),
 )
 """Every measure, in the order of the report. CoP backward is from 10 to 55 % of the gait cycle, see `ROLL`."""
