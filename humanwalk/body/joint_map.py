@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JointActuatorIndex
-from pydrake.systems.framework import Context
 
 from humanwalk.body.limbs import PELVIS
 from humanwalk.numerics import Array, Indices, Mask
@@ -84,9 +83,12 @@ def pelvis_velocity(plant: MultibodyPlant) -> slice:
     return slice(start, start + 6)
 
 
-def base_first_mass_matrix(plant: MultibodyPlant, context: Context) -> Array:
-    """Return the mass matrix with the floating base first, then the joints in actuator order; shape (6 + n, 6 + n)."""
-    M = plant.CalcMassMatrix(context)
+def base_first_mass_matrix(plant: MultibodyPlant) -> Array:
+    """Return the mass matrix at the default positions, shape (6 + n, 6 + n).
+
+    The floating base comes first, then the joints in actuator order.
+    """
+    M = plant.CalcMassMatrix(plant.CreateDefaultContext())
     joints = JointMap.of(plant)
     order = np.concatenate((np.setdiff1d(np.arange(M.shape[0]), joints.v), joints.v))
     return np.asarray(M[np.ix_(order, order)])

@@ -12,6 +12,7 @@ from typing import Literal, Protocol
 from humanwalk.body.shapes import Box, Cylinder, Shape, Vector3
 from humanwalk.body.skeleton import Segment, Skeleton, Weld
 from humanwalk.body.visual import Color, Visual, capsule, ellipsoid
+from humanwalk.body.visuals import CHEST_CENTER, CHEST_RADII
 from humanwalk.quantity import quantity
 from humanwalk.sides import OUTWARD, SIDES
 
@@ -19,10 +20,6 @@ CLOTH: Color = (0.20, 0.36, 0.30)
 POCKET: Color = (0.26, 0.45, 0.38)
 STRAP: Color = (0.11, 0.12, 0.13)
 CASE: Color = (0.45, 0.16, 0.18)
-
-CHEST_RADII: Vector3 = (0.116, 0.168, 0.185)
-CHEST_CENTER = 0.035
-"""Chest in the look of the reference human: half-axes, and height of the middle above the body's joint [m]."""
 
 STRAP_PATH: tuple[Vector3, ...] = (
     (-0.090, 0.095, 0.170),

@@ -33,6 +33,11 @@ def visuals(skeleton: Skeleton) -> tuple[Visual, ...]:
     return (*(v.scaled(skeleton.size(v.body)) for v in shown), *(v for s in skeleton.segments for v in s.drawn))
 
 
+CHEST_RADII: Vector3 = (0.116, 0.168, 0.185)
+CHEST_CENTER = 0.035
+"""Chest of the reference human: half-axes, and height of the middle above the body's joint [m]."""
+
+
 def _trunk() -> Iterator[Visual]:
     """Pelvis in trousers, belt, abdomen and chest in a shirt."""
     yield ellipsoid("Pelvis", "hips", (-0.005, 0, 0.02), (0.112, 0.166, 0.125), TROUSERS)
@@ -44,7 +49,7 @@ def _trunk() -> Iterator[Visual]:
         radii = (0.106, 0.150 - 0.001 * level, 0.14 if level == 6 else 0.17)
         yield ellipsoid(f"Lumbar_{level}", "waist", (0.0, 0, 0.022), radii, SHIRT)
     yield ellipsoid("Thoracic_10_12", "waist", (0.0, 0, 0.02), (0.110, 0.155, 0.17), SHIRT)
-    yield ellipsoid("Ribs", "chest", (0.0, 0, 0.035), (0.116, 0.168, 0.185), SHIRT)
+    yield ellipsoid("Ribs", "chest", (0.0, 0, CHEST_CENTER), CHEST_RADII, SHIRT)
     yield ellipsoid("Thoracic_4_6", "chest", (0.0, 0, 0.02), (0.108, 0.168, 0.13), SHIRT)
     yield ellipsoid("Thoracic_1_3", "chest", (-0.005, 0, -0.015), (0.098, 0.16, 0.085), SHIRT)
     yield ellipsoid("Scapula", "yoke", (-0.008, 0, -0.010), (0.078, 0.238, 0.058), SHIRT)

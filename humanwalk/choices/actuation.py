@@ -119,7 +119,7 @@ class AdaptiveActuation(PdActuation, AdaptationParameters):
     def add_correction(self, world: World) -> None:
         plant, kp, kd, own = world.plant, world.kp, world.kd, scaled(self, world.subject.scale)
         neutral = body_plant(world.subject)
-        inertia = base_first_mass_matrix(neutral, neutral.CreateDefaultContext()).diagonal()[-kp.size :]
+        inertia = base_first_mass_matrix(neutral).diagonal()[-kp.size :]
         require_passive(kd, inertia, kp > 0, own.error_rate)
         # At a constant acceleration the adaptation is integral action, to which inertia and load each add up to kp / T.
         require_stable_integral(

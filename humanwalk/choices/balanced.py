@@ -1,6 +1,5 @@
 """The controller that balances: step planner and whole-body program, no external force."""
 
-import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, Self
 
@@ -17,7 +16,7 @@ from humanwalk.body.subject import Subject
 from humanwalk.body.upright import knee_flexions
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import JointCommand
-from humanwalk.choices.start import StartPosture, load_lean
+from humanwalk.choices.start import StartPosture, load_lean, start_slope
 from humanwalk.choices.style import STYLES, NoStyle, Style
 from humanwalk.choices.world import World
 from humanwalk.control.felt_load import LoadFeeling
@@ -55,7 +54,7 @@ class CompliantGains:
     """Damping of every joint towards the planned rate."""
 
     foot_stiffness: float = quantity(500.0, "N m/rad", 0.0, 1e5)
-    """Stiffness of ankle rotation, midfoot and toes, which the planner does not steer."""
+    """Stiffness with which the actuators hold ankle rotation, midfoot and toes at their desired angles."""
 
     foot_damping: float = quantity(10.0, "N m s/rad", 0.0, 1e3)
     """Damping of the same."""
@@ -144,7 +143,7 @@ class BalancedController:
         )
 
     def actuator_gains(self, subject: Subject) -> tuple[Array, Array]:
-        gains = self.fitted(subject).gains
+        gains = scaled(self.gains, subject.scale)
         foot = np.isin(
             JointMap.of(kinematics_plant(subject)).names, [joint for leg in LEGS.values() for joint in leg.foot_joints]
         )
@@ -153,7 +152,7 @@ class BalancedController:
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
         """Standing on bent legs, the soles parallel to the ground along x; it leans against known loads."""
         lean = load_lean(subject)
-        slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
+        slope = start_slope(terrain)
         angles = self._hanging_arms(subject)
         for side, flexion in knee_flexions(subject.skeleton, 2.0 * START_FLEXION).items():
             leg = LEGS[side]

@@ -38,7 +38,7 @@ class StartParameters:
     actuator, stiffness and damping of each task of the whole-body program. It lasts for the whole run."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for an angle beyond a full turn."""
+        """Raise ParameterError for an angle beyond half a turn."""
         for name, angle in self.joint_angles.items():
             require_in_range(f"joint_angles.{name}", angle, "rad", -math.pi, math.pi)
 
@@ -54,10 +54,15 @@ class StartPosture:
     X_WP: RigidTransform = RigidTransform()
 
 
-def load_lean(subject: Subject) -> float:
-    """Forward rotation of the whole body about the ankles against the loads that the person knows [rad].
+def start_slope(terrain: Terrain) -> float:
+    """Pitch of a sole that stands at the start, along x [rad]."""
+    return math.asin(terrain.axes(np.zeros(2))[0, 2])
 
-    It puts the center of mass with these loads above the point where it is without them; 0 without loads.
+
+def load_lean(subject: Subject) -> float:
+    """Forward rotation of the whole body about the ankles against known loads, devices and impairments [rad].
+
+    It puts the center of mass with these above the point where it is without them; 0 without any.
     """
     free, carrying = subject.body, subject.known_skeleton
     return math.atan2(float(free.com[0] - carrying.com[0]), float(carrying.com[2]) - free.ankle_height("Right"))

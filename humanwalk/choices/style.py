@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 from humanwalk.body.joint_map import JointMap
-from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.subject import Subject
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import TaskGains, critical
@@ -53,7 +52,7 @@ class NormativeStyle:
     "Should the style follow the ankle?")."""
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
-        curves = normative_curves(subject.skeleton.hip_height, PELVIC_TILT)
+        curves = normative_curves(subject.skeleton.hip_height)
         return JointStyle(joints, curves, self.gains, self.ankle)
 
 

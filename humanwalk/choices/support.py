@@ -24,7 +24,7 @@ def add_support(world: World, parameters: BalanceSupportParameters, pelvis_refer
     if not parameters.enabled:
         return
     plant = world.plant
-    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    M = base_first_mass_matrix(plant)
     stable = largest_support_step(M, world.kp, world.step_impedance, parameters)
     if plant.time_step() > stable:
         raise ParameterError(

@@ -1,10 +1,8 @@
 """The thesis' controller: foot paths by splines, inverse kinematics of the legs, assumed balance."""
 
-import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
 from pydrake.systems.framework import OutputPort
 
 from humanwalk.body.joint_map import JointMap
@@ -13,7 +11,7 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import JointCommand
-from humanwalk.choices.start import StartPosture
+from humanwalk.choices.start import StartPosture, start_slope
 from humanwalk.choices.support import add_support
 from humanwalk.choices.world import World
 from humanwalk.control.balance_levels import FootForceBalanceParameters, UpperBodyBalanceParameters
@@ -128,7 +126,7 @@ class ThesisController:
 
     def start_posture(self, subject: Subject, terrain: Terrain) -> StartPosture:
         """Standing: legs straight, soles parallel to the ground along x, arms in the middle of their swing."""
-        slope = math.asin(terrain.axes(np.zeros(2))[0, 2])
+        slope = start_slope(terrain)
         ankles = {LEGS[side].ankle: slope for side in SIDES}
         return StartPosture({name: joint.middle for name, joint in arm_joints(self.gait.arms).items()} | ankles)
 

@@ -84,7 +84,7 @@ def require_stable_integral(
             f"{field}: an integral needs the discrete plant; allowed: with simulation.integrator: discrete; set it "
             "and a time_step"
         )
-    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    M = base_first_mass_matrix(plant)
 
     def update(rate: float) -> Array:
         return integral_update(h, M, kp, kd, law, rate * gain * kp, rate_time * rate * gain * kp)

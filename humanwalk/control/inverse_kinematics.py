@@ -17,6 +17,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import FixedOffsetFrame, JacobianWrtVariable, RevoluteJoint
 
 from humanwalk.numerics import Array
+from humanwalk.numerics.rotation import rotation_vector
 from humanwalk.quantity import quantity
 
 JacobianKind = Literal["analytic", "numeric"]
@@ -150,8 +151,8 @@ def pose_error(X: RigidTransform, X_desired: RigidTransform) -> Array:
 
     The rotation vector replaces the thesis' difference of Euler angles (Eq 4-3), which jumps at +-pi (E13).
     """
-    rotation = X.rotation().multiply(X_desired.rotation().inverse()).ToAngleAxis()
-    return np.concatenate((rotation.angle() * rotation.axis(), X.translation() - X_desired.translation()))
+    rotation = rotation_vector(X_desired.rotation().matrix(), X.rotation().matrix())
+    return np.concatenate((rotation, X.translation() - X_desired.translation()))
 
 
 def solve_inverse_kinematics(

@@ -154,7 +154,7 @@ def largest_pd_step(M: Array, kp: Array, kd: Array, law: PdLaw, upper: float = 0
 
 def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> None:
     """Raise ParameterError if a law is unstable at the time step of a finalized plant (at its default positions)."""
-    stable = largest_pd_step(base_first_mass_matrix(plant, plant.CreateDefaultContext()), kp, kd, law)
+    stable = largest_pd_step(base_first_mass_matrix(plant), kp, kd, law)
     if plant.time_step() > stable:
         raise ParameterError(
             f"law: {law} is unstable at time_step {plant.time_step():g} s; allowed: steps up to "

@@ -120,7 +120,7 @@ class WholeBodyParameters:
     """Pitch of a foot whose heel rises."""
 
     swing_position: TaskGains = critical(335.0, 38.5)
-    """Position of the swing ankle."""
+    """Position of the swing ankle; of the ball of a foot on a passive ankle."""
 
     swing_rotation: TaskGains = critical(400.0, 20.0)
     """Rotation of the swing foot."""

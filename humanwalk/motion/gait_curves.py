@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from humanwalk.body import SIDES, Side
+from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.gait.normative import CYCLE, SPEED_GROUPS, people
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -72,15 +73,14 @@ class GaitCurves:
         return float(self.speeds[0])
 
 
-def normative_curves(leg_length: float, pelvic_tilt: float) -> GaitCurves:
+def normative_curves(leg_length: float) -> GaitCurves:
     """Angles of people at slow, free and fast dimensionless speeds, both legs alike.
 
     Args:
         leg_length: Height of the hip joints in standing [m].
-        pelvic_tilt: Of the pelvic plane in upright standing, where the model's hips are at 0 [rad].
     """
     groups = [np.column_stack([people(name, group).mean for name in ANGLES]) for group in SPEED_GROUPS]
     # The cycle ends where it begins: the last point repeats the first.
-    angles = np.radians(np.array(groups)[:, : CYCLE.size - 1]) - np.array((pelvic_tilt, 0.0, 0.0))
+    angles = np.radians(np.array(groups)[:, : CYCLE.size - 1]) - np.array((PELVIC_TILT, 0.0, 0.0))
     speeds = np.sqrt(GRAVITY * leg_length) * np.array([np.mean(ends) for ends in SPEED_GROUPS.values()])
     return GaitCurves.through(speeds, np.stack((angles, angles), axis=2))

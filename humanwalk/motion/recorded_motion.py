@@ -82,11 +82,6 @@ class RecordedMotion:
     pelvis_position: Array
     ease_in: float
 
-    @property
-    def duration(self) -> float:
-        """Time at which the last sample is reached [s]."""
-        return float(self.time[-1] + 0.5 * self.ease_in)
-
     @cached_property
     def _curve(self) -> PchipInterpolator:
         return PchipInterpolator(self.time, np.hstack((self.angles, self.pelvis_angles, self.pelvis_position)))

@@ -8,7 +8,6 @@ from pydrake.systems.framework import Context
 
 from humanwalk.body import SIDES, contact_spheres
 from humanwalk.body.limbs import LEGS
-from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.plant import skeleton_plant, sole_points
 from humanwalk.body.skeleton import Skeleton
 from humanwalk.body.subject import Subject
@@ -37,7 +36,7 @@ def _mean_height(body: Skeleton) -> float:
     plant = skeleton_plant(body)
     context = plant.CreateDefaultContext()
     straight = _height(body, plant, context)
-    curves = normative_curves(body.hip_height, PELVIC_TILT)
+    curves = normative_curves(body.hip_height)
     speed = curves.speeds[list(SPEED_GROUPS).index("free")]
     heights = []
     for phase in PHASES:

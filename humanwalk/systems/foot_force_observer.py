@@ -58,15 +58,13 @@ class FootForceObserver(LeafSystem):
 
     def _calc_feet(self, context: Context) -> list[FootForce]:
         results = self._contacts.Eval(context)
-        # Of every contact of a foot: sign; point, force on B and moment on B in W.
-        signs: dict[Side, list[float]] = {side: [] for side in SIDES}
+        # Of every contact of a foot: point, force and moment on the foot in W.
         contacts: dict[Side, list[tuple[Array, Array, Array]]] = {side: [] for side in SIDES}
 
         def add(A: BodyIndex, B: BodyIndex, point: Array, force: Array, moment: Array) -> None:
             if (A, B) in self._foot:
                 side, sign = self._foot[A, B]
-                signs[side].append(sign)
-                contacts[side].append((point, force, moment))
+                contacts[side].append((point, sign * force, sign * moment))
 
         for i in range(results.num_point_pair_contacts()):
             pair = results.point_pair_contact_info(i)
@@ -81,6 +79,5 @@ class FootForceObserver(LeafSystem):
         for side in feet:
             if contacts[side]:
                 p_WQ, f_W, m_W = np.array(contacts[side]).swapaxes(0, 1)
-                sign = np.array(signs[side])[:, None]
-                feet[side] = foot_force(p_WQ, sign * f_W, self._terrain, sign * m_W)
+                feet[side] = foot_force(p_WQ, f_W, self._terrain, m_W)
         return list(feet.values())

@@ -17,7 +17,7 @@ ENDLESS = 10_000.0
 
 
 class Face(NamedTuple):
-    """The plane z = height + gradient (x, y) over a rectangle with edges along x and y, in W.
+    """The plane z = intercept + gradient . (x, y) over a rectangle with edges along x and y, in W.
 
     Attributes:
         lower, upper: Corners (x, y) of the rectangle [m]; `ENDLESS` away where it has no end.

@@ -67,7 +67,6 @@ class Curb(Piece):
 class Obstacle(Piece):
     """Level ground with a beam across its middle, to step over."""
 
-    color: ClassVar[Color] = (0.86, 0.87, 0.86)
     beam_color: ClassVar[Color] = (0.80, 0.42, 0.24)
 
     height: float = quantity(0.15, "m", 0.01, 0.5)

@@ -65,7 +65,7 @@ class CommandedPath:
     """The last part of the path.
 
     Attributes:
-        places: Places `spacing` apart; the last one is the commanded place.
+        places: Places `spacing` or a turn of `STORED_TURN` apart; the last one is the commanded place.
         spacing: Distance between two stored places [m].
         min_speed: See `PathFollowing`.
     """

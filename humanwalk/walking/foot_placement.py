@@ -81,8 +81,9 @@ class StepPlacement:
     def clear_length(self, x: float, width: float) -> float:
         """Distance ahead of the stance foot [m] of a foothold that would be x ahead and too narrow there.
 
-        It is farther by half of the width that is missing: beyond `abreast` a foot may be nearer to the other side the
-        farther it is, and the next step corrects a length more easily than a crossing.
+        It moves by half of the missing width: forward, or backward if x is more than `abreast` behind. Beyond `abreast`
+        a foot may be nearer to the other side the farther it is, and the next step corrects a length more easily than a
+        crossing.
         """
         farthest = self.abreast + self.min_width + self.max_crossover
         if abs(x) >= farthest:

@@ -51,7 +51,8 @@ class FootholdSearch:
     """Largest difference in height between the feet."""
 
     distance: float = quantity(0.45, "m", 0.0, 1.0)
-    """Largest distance from the expected foothold, along x and along y."""
+    """Largest distance from the expected foothold, along and across the foot; faces are searched within it along x and
+    y of W."""
 
     lateral_weight: float = quantity(2.0, "", 0.1, 10.0)
     """Weight of a sideways distance from the desired foothold relative to a forward one."""

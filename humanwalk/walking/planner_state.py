@@ -129,7 +129,7 @@ class PlannerState(NamedTuple):
     @property
     def is_stepping(self) -> bool:
         """Whether the walker is in double or single support of a step."""
-        return self.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+        return self.phase.is_stepping
 
     @property
     def direction(self) -> complex:

@@ -3,13 +3,14 @@
 import math
 from dataclasses import dataclass, replace
 
+from humanwalk.numerics.scalars import clip
 from humanwalk.quantity import ParameterError, quantity
 
 MAX_DOUBLE_SUPPORT = 0.7
 """Largest share of double support in a step (our choice)."""
 
-MIN_WALK_RATIO = 0.05
-"""Smallest walk ratio [m s]: steps of 0.2 s at 1.2 m/s (our choice)."""
+SHORTEST_STEP = 0.38
+"""Shortest step that a walk ratio asks for, per `step`: 0.2 s (our choice)."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,8 @@ class StepTiming:
     speed."""
 
     walk_ratio: float = quantity(0.361, "m s", 0.0, 1.0)
-    """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`."""
+    """Length times duration of a step, which in people hardly depends on the speed; 0: all steps take `step`. No step
+    is shorter than 0.38 of `step`."""
 
     longest_step: float = quantity(0.65, "s", 0.3, 1.2)
     """Longest duration for a walk ratio: slow walks have shorter steps instead."""
@@ -72,11 +74,6 @@ class StepTiming:
                 f"double_support: {self.double_support:g} is too long for step {self.step:g}; allowed: up to "
                 f"{MAX_DOUBLE_SUPPORT * self.step:.3g} s; the rest of the step has to swing the leg"
             )
-        if 0.0 < self.walk_ratio < MIN_WALK_RATIO:
-            raise ParameterError(
-                f"walk_ratio: {self.walk_ratio:g} is too small; allowed: 0, or {MIN_WALK_RATIO:g} to 1 m s; people "
-                "have 0.33 to 0.40"
-            )
 
     def at_velocity(self, velocity: complex, caution: float = 0.0) -> "StepTiming":
         """The timing at a commanded velocity: with the length v T of a step forward, the walk ratio is v T^2.
@@ -88,7 +85,8 @@ class StepTiming:
         forward = velocity.real
         if self.walk_ratio == 0.0 or forward <= 0.0:
             return self
-        ordinary = min(math.sqrt(self.walk_ratio / forward), self.longest_step) / self.step
+        duration = clip(math.sqrt(self.walk_ratio / forward), SHORTEST_STEP * self.step, self.longest_step)
+        ordinary = duration / self.step
         share = max(caution, min(abs(velocity.imag) / self.sideways_speed, 1.0))
         return self.stretched(ordinary + share * (min(ordinary, 1.0) - ordinary))
 

@@ -171,15 +171,14 @@ def clearance(
     """
     if start.face.covers_as(goal.face) and lies_on(start.face, start.position, yaw, sole):
         return Clearance().raised(ground.unseen)
-    share = np.linspace(0.0, 1.0, SAMPLES)
-    above = height_above_plane(ground, start, goal, share, yaw, sole)
+    above = height_above_plane(ground, start, goal, TIMES, yaw, sole)
     # The toes of a foot that left its face steeply pitched pass below the plane.
     below = np.where(np.abs(TIMES - 0.5) <= 0.5 - SHORTEST_PART, np.maximum(-swing.lowest, 0.0), 0.0)
     if above.max() <= law.tolerance and not below.any():
         return Clearance().raised(ground.unseen)
     rise = goal.ground - start.ground
-    near = min(law.nearness / max(abs(goal.position - start.position), law.nearness), 0.5)
-    leaving, landing = share <= near, share >= 1.0 - near
+    near = law.nearness / max(abs(goal.position - start.position), 2.0 * law.nearness)
+    leaving, landing = near >= TIMES, 1.0 - near <= TIMES
     # Near a foothold its own ground stands out by this of the plane, which is on its way to the other one.
     least = law.margin + near * abs(rise)
     depart, arrive = 0.0, 1.0
@@ -195,7 +194,7 @@ def clearance(
     # The ground of an ordinary swing rises with the progress, not with the way.
     ahead = (swing.way(TIMES) - moved) * rise
     margin = law.margin * np.minimum(1.0, (1.0 - TIMES) / ENDING)
-    stands_out = np.interp(moved, share, above)
+    stands_out = np.interp(moved, TIMES, above)
     needed = np.where(stands_out > law.tolerance, np.maximum(stands_out - ahead + margin - swing.lowest, 0.0), below)
     return Clearance(_smooth_lift(needed, depart, arrive), depart, arrive).raised(ground.unseen)
 

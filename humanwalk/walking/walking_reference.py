@@ -32,6 +32,11 @@ class Phase(Enum):
     DOUBLE_SUPPORT = 2
     SINGLE_SUPPORT = 3
 
+    @property
+    def is_stepping(self) -> bool:
+        """Whether it is double or single support of a step."""
+        return self in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+
 
 class FootTask(Enum):
     """Phase of a foot."""
@@ -230,7 +235,7 @@ class WalkingReference:
     @property
     def is_stepping(self) -> bool:
         """Whether the walker is in double or single support of a step."""
-        return self.phase in (Phase.DOUBLE_SUPPORT, Phase.SINGLE_SUPPORT)
+        return self.phase.is_stepping
 
     def gait_phase(self, side: Side) -> float:
         """Phase of the gait cycle of a foot: 0 at its touchdown, 1 at the next one; 0 in standing."""

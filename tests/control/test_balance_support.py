@@ -154,7 +154,7 @@ def test_its_damping_for_the_reference_body_is_as_documented() -> None:
 
 @pytest.mark.parametrize("law", ["implicit", "semi_implicit"])
 def test_the_default_support_is_stable_at_two_milliseconds_with_a_margin(plant: MultibodyPlant, law: PdLaw) -> None:
-    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    M = base_first_mass_matrix(plant)
     kp, kd = joint_gains(plant, JointGains())
     impedance = partial(PD_LAWS[law].impedance, kp=kp, kd=kd)
     assert largest_support_step(M, kp, impedance, BalanceSupportParameters()) > 1.05 * 0.002
@@ -172,7 +172,7 @@ def test_the_stable_step_of_a_damped_block_is_that_of_explicit_euler(mass: float
 
 def test_stiff_joints_let_the_support_take_longer_steps(plant: MultibodyPlant) -> None:
     """Held joints make the pelvis carry more inertia."""
-    M = base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    M = base_first_mass_matrix(plant)
     n = M.shape[0] - 6
     support = BalanceSupportParameters()
     loose = largest_support_step(M, np.zeros(n), lambda h: (np.zeros(n), np.zeros(n)), support)

@@ -20,7 +20,7 @@ stiffness, damping, steps = st.floats(1.0, 1e5), st.floats(0.0, 100.0), st.float
 
 @pytest.fixture(scope="module")
 def mass_matrix(plant: MultibodyPlant) -> Array:
-    return base_first_mass_matrix(plant, plant.CreateDefaultContext())
+    return base_first_mass_matrix(plant)
 
 
 def step_of(law: PdLaw, inertia: float, kp: float, kd: float, **more: Any) -> float:

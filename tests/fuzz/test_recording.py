@@ -43,7 +43,7 @@ VALUES = [
 def follow(recording: Path, mapping: Path | None = None) -> None:
     read = load_as(MotionMapping, mapping) if mapping else MotionMapping()
     motion = followed_motion(recording, read, Subject(), Plane(), ease_in=0.3)
-    for time in (0.0, 0.05, motion.duration, 1e3):
+    for time in (0.0, 0.05, motion.time[-1], 1e3):
         angles, rates = motion.joints(time)
         pose = motion.pelvis(time)
         assert np.isfinite([*angles, *rates, *pose.X_WP.translation(), *pose.V_WP.get_coeffs()]).all()

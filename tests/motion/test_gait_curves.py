@@ -12,7 +12,7 @@ from humanwalk.motion.gait_curves import ANGLES, GaitCurves, normative_curves
 from humanwalk.sides import Side
 
 LEG = human().hip_height
-CURVES = normative_curves(LEG, PELVIC_TILT)
+CURVES = normative_curves(LEG)
 phases = st.floats(0.0, 1.0)
 
 

@@ -6,7 +6,6 @@ import pytest
 from humanwalk.body import SIDES
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.limbs import LEGS
-from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.motion.gait_curves import normative_curves
@@ -17,7 +16,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.sides import Side
 
 SUBJECT = Subject()
-CURVES = normative_curves(SUBJECT.skeleton.hip_height, PELVIC_TILT)
+CURVES = normative_curves(SUBJECT.skeleton.hip_height)
 SPEED, STEP = 0.9, 0.58
 
 

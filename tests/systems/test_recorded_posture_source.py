@@ -67,7 +67,7 @@ def test_velocities_are_time_derivatives(time: float) -> None:
 def test_motion_starts_and_ends_at_rest() -> None:
     recorded = motion()
     source = RecordedPostureSource(recorded)
-    for time, row in ((0.0, 0), (recorded.duration + 1.0, -1)):
+    for time, row in ((0.0, 0), (recorded.time[-1] + 1.0, -1)):
         found = at(source, time)
         np.testing.assert_allclose(found["desired_state"][:N], recorded.angles[row], atol=1e-12)
         np.testing.assert_allclose(found["desired_state"][N:], 0.0, atol=1e-12)

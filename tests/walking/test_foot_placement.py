@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from humanwalk.sides import OUTWARD, Side, other_side
+from humanwalk.sides import OUTWARD, SIDES, Side, other_side
 from humanwalk.walking.foot_placement import StepPlacement, foothold_gain
 
 PLACEMENT = StepPlacement()
@@ -90,7 +90,8 @@ def test_in_double_support_footholds_across_and_wide_ones_call_for_a_faster_cloc
 
 
 def test_a_foot_that_is_itself_across_does_not_hurry_to_cross() -> None:
-    for stance, outward in (("Right", 1.0), ("Left", -1.0)):
+    for stance in SIDES:
+        outward = OUTWARD[other_side(stance)]
         across = complex(-0.4, -0.05 * outward)
         assert PLACEMENT.double_support_excess(-1j * outward, stance, across) == 0.0
         assert PLACEMENT.double_support_excess(1j * outward, stance, across) > 0.0

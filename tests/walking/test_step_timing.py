@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from humanwalk.body.subject import Subject
+from humanwalk.body_units import scaled
 from humanwalk.quantity import ParameterError
 from humanwalk.walking.step_timing import MAX_DOUBLE_SUPPORT, StepTiming
 
@@ -82,9 +84,15 @@ def test_a_step_without_time_to_swing_the_leg_is_refused() -> None:
     assert StepTiming(step=0.5, double_support=0.35).single_support > 0.0
 
 
-def test_a_walk_ratio_with_steps_too_short_for_a_swing_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"walk_ratio: 0\.01 is too small; allowed: 0, or 0\.05 to 1 m s"):
-        StepTiming(walk_ratio=0.01)
+@given(st.floats(1e-6, 1.0), st.floats(0.05, 3.0))
+def test_no_walk_ratio_gives_steps_too_short_to_swing_a_leg(walk_ratio: float, speed: float) -> None:
+    assert replace(TIMING, walk_ratio=walk_ratio).at_velocity(speed).step >= 0.38 * TIMING.step - 1e-12
+
+
+@given(st.floats(0.0, 1.0))
+def test_every_walk_ratio_can_be_scaled_to_a_child(walk_ratio: float) -> None:
+    child = Subject(mass=20.0, stature=1.1, age=7.0)
+    assert scaled(StepTiming(walk_ratio=walk_ratio), child.scale).walk_ratio <= walk_ratio
 
 
 @pytest.mark.parametrize("speed", [0.0, -0.5])
