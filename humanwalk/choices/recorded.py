@@ -1,7 +1,6 @@
 """The controller that follows recorded joint angles, with the pelvis supported, or without physics."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from pydrake.systems.framework import OutputPort
@@ -11,29 +10,22 @@ from humanwalk.body.plant import kinematics_plant
 from humanwalk.body.subject import Subject
 from humanwalk.body_units import scaled
 from humanwalk.choices.controller import JointCommand
+from humanwalk.choices.recording_file import RecordingFile
 from humanwalk.choices.start import StartPosture
 from humanwalk.choices.support import add_support
 from humanwalk.choices.world import World
 from humanwalk.control.balance_support import BalanceSupportParameters
 from humanwalk.control.joint_gains import JointGains, joint_gains
-from humanwalk.motion.followed import followed_motion
-from humanwalk.motion.recorded_motion import MotionMapping, RecordedMotion
+from humanwalk.motion.recorded_motion import RecordedMotion
 from humanwalk.numerics import Array
-from humanwalk.parameter_file import load_as
-from humanwalk.quantity import ParameterError, file_path, quantity
+from humanwalk.quantity import ParameterError, quantity
 from humanwalk.systems.recorded_posture_source import RecordedPostureSource
 from humanwalk.terrain import Terrain
 
 
 @dataclass(frozen=True)
-class RecordedController:
+class RecordedController(RecordingFile):
     """A recording followed joint by joint."""
-
-    angles: str = file_path()
-    """A .mot, .sto or .csv file with joint angles; its path counts from the scenario's folder."""
-
-    mapping: str = file_path()
-    """A YAML file (`MotionMapping`) that assigns columns to joints and gives their unit; empty: by name."""
 
     kinematic: bool = False
     """Show the recording without physics: no forces, no torques, no balance."""
@@ -45,11 +37,6 @@ class RecordedController:
     """The assumed balance: a spring-damper on the pelvis; for the reference body, scales with the subject."""
 
     gains: JointGains = JointGains()
-
-    def __post_init__(self) -> None:
-        """Raise ParameterError without a recording."""
-        if not self.angles:
-            raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it (--follow FILE)")
 
     command = commanded_speed = followed_style = None
 
@@ -97,5 +84,4 @@ class RecordedController:
 
     def motion(self, subject: Subject, terrain: Terrain) -> RecordedMotion:
         """The recording as motion of a subject on a terrain."""
-        mapping = load_as(MotionMapping, Path(self.mapping)) if self.mapping else MotionMapping()
-        return followed_motion(Path(self.angles), mapping, subject, terrain, self.ease_in)
+        return self.read(subject, terrain, self.ease_in)

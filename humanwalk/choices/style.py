@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 from humanwalk.body.joint_map import JointMap
 from humanwalk.body.subject import Subject
+from humanwalk.choices.recording_file import RecordingFile
 from humanwalk.control.joint_style import JointStyle
 from humanwalk.control.whole_body_parameters import TaskGains, critical
-from humanwalk.motion.followed import followed_motion
 from humanwalk.motion.gait_curves import normative_curves
-from humanwalk.motion.recorded_motion import MotionMapping
 from humanwalk.motion.recorded_strides import RecordedGait, recorded_gait
-from humanwalk.parameter_file import load_as
-from humanwalk.quantity import ParameterError, file_path, quantity
+from humanwalk.quantity import quantity
 from humanwalk.terrain import Plane
 
 
@@ -57,21 +54,10 @@ class NormativeStyle:
 
 
 @dataclass(frozen=True)
-class RecordedStyle:
+class RecordedStyle(RecordingFile):
     """Angles of the mean stride of a recording."""
 
-    angles: str = file_path()
-    """A .mot, .sto or .csv file with joint angles; its path counts from the scenario's folder."""
-
-    mapping: str = file_path()
-    """A YAML file (`MotionMapping`) that assigns columns to joints and gives their unit; empty: by name."""
-
     gains: TaskGains = critical(300.0, 5.0)
-
-    def __post_init__(self) -> None:
-        """Raise ParameterError without a recording."""
-        if not self.angles:
-            raise ParameterError("angles: no recording; allowed: a .mot, .sto or .csv file; name it")
 
     def task(self, subject: Subject, joints: JointMap) -> JointStyle | None:
         return JointStyle(joints, self.gait(subject).curves, self.gains)
@@ -82,9 +68,7 @@ class RecordedStyle:
         Raises:
             ParameterError: the recording or its mapping cannot be used, or is not a walk.
         """
-        mapping = load_as(MotionMapping, Path(self.mapping)) if self.mapping else MotionMapping()
-        motion = followed_motion(Path(self.angles), mapping, subject, Plane(), ease_in=0.0)
-        return recorded_gait(motion, subject, self.angles)
+        return recorded_gait(self.read(subject, Plane(), ease_in=0.0), subject, self.angles)
 
 
 STYLES: dict[str, type[Style]] = {"none": NoStyle, "normative": NormativeStyle, "recorded": RecordedStyle}

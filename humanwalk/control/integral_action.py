@@ -4,7 +4,7 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 
 from humanwalk.body.joint_map import base_first_mass_matrix
-from humanwalk.control.pd_control import PD_LAWS, PdLaw, linear_update
+from humanwalk.control.pd_control import PD_LAWS, PdLaw, joint_update
 from humanwalk.numerics import Array, Mask
 from humanwalk.numerics.stability import largest_stable_step, round_up
 from humanwalk.quantity import ParameterError
@@ -44,15 +44,13 @@ def integral_update(h: float, M: Array, kp: Array, kd: Array, law: PdLaw, ki: Ar
     Returns:
         Shape (2n + k, 2n + k), with the k joints that have ki.
     """
-    base, n = len(M) - kp.size, kp.size
-    D, E, K = (np.concatenate((np.zeros(base), x)) for x in (*PD_LAWS[law].impedance(h, kp, kd), kp))
-    # No force depends on the base, so that its rows and columns add nothing but free motion.
-    joints = np.flatnonzero(np.tile(np.arange(len(M)) >= base, 2))
-    integral = np.eye(n)[:, ki > 0]
+    base = len(M) - kp.size
+    D = np.pad(PD_LAWS[law].impedance(h, kp, kd)[0], (base, 0))
+    integral = np.eye(kp.size)[:, ki > 0]
     v_of_z = h * np.linalg.inv(M + np.diag(D))[base:, base:] @ integral
     return np.block(
         [
-            [linear_update(h, M, D, E, K)[np.ix_(joints, joints)], np.concatenate((h * v_of_z, v_of_z))],
+            [joint_update(h, M, kp, kd, law), np.concatenate((h * v_of_z, v_of_z))],
             [-h * integral.T @ np.diag(ki), -h * integral.T @ np.diag(kx), np.eye(integral.shape[1])],
         ]
     )

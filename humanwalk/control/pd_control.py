@@ -131,6 +131,22 @@ def linear_update(h: float, M: Array, D: Array, E: Array, K: Array) -> Array:
     return np.block([[eye + h * v_of_q, h * v_of_v], [v_of_q, v_of_v]])
 
 
+def joint_update(h: float, M: Array, kp: Array, kd: Array, law: PdLaw) -> Array:
+    """Matrix of [q; v] -> [q'; v'] for the n joints of a body with a PD law, linearized at rest; shape (2n, 2n).
+
+    Args:
+        h: step [s].
+        M: mass matrix, shape (m, m), floating base first; its last n rows are the joints.
+        kp, kd: gains of the n joints.
+        law: discretization.
+    """
+    base = len(M) - kp.size
+    D, E, K = (np.pad(diagonal, (base, 0)) for diagonal in (*PD_LAWS[law].impedance(h, kp, kd), kp))
+    # No force depends on the base, so that its rows and columns add nothing but free motion.
+    joints = np.flatnonzero(np.tile(np.arange(len(M)) >= base, 2))
+    return linear_update(h, M, D, E, K)[np.ix_(joints, joints)]
+
+
 def largest_pd_step(M: Array, kp: Array, kd: Array, law: PdLaw, upper: float = 0.1) -> float:
     """Largest step [s] at which a law is stable, linearized at rest.
 
@@ -140,16 +156,7 @@ def largest_pd_step(M: Array, kp: Array, kd: Array, law: PdLaw, upper: float = 0
         law: discretization.
         upper: longest step that is considered [s].
     """
-    base = np.zeros(len(M) - kp.size)
-    K = np.concatenate((base, kp))
-
-    def update(h: float) -> Array:
-        D, E = (np.concatenate((base, diagonal)) for diagonal in PD_LAWS[law].impedance(h, kp, kd))
-        # No force depends on the base, so that its rows and columns add nothing but free motion.
-        joints = np.flatnonzero(np.tile(np.arange(len(M)) >= base.size, 2))
-        return linear_update(h, M, D, E, K)[np.ix_(joints, joints)]
-
-    return largest_stable_step(update, upper)
+    return largest_stable_step(lambda h: joint_update(h, M, kp, kd, law), upper)
 
 
 def require_stable(plant: MultibodyPlant, kp: Array, kd: Array, law: PdLaw) -> None:
