@@ -7,6 +7,7 @@ names that depend on the scenario, are made by humanwalk only.
 import ast
 import dataclasses
 import inspect
+import math
 import textwrap
 import types
 import typing
@@ -76,7 +77,9 @@ def _field(
         document = f"{document} [{metadata['unit']}]".strip() if metadata["unit"] else document
     if document:
         schema["description"] = document
-    if field.default is not dataclasses.MISSING and not dataclasses.is_dataclass(field.default):
+    # JSON has no infinite numbers.
+    is_infinite = isinstance(field.default, float) and math.isinf(field.default)
+    if field.default is not dataclasses.MISSING and not dataclasses.is_dataclass(field.default) and not is_infinite:
         schema["default"] = plain(field.default)
     return schema
 

@@ -34,7 +34,7 @@ def schema(
     from humanwalk.files import require_new, write_text
     from humanwalk.study.schemas import schema_of
 
-    text = json.dumps(schema_of(kind), indent=1)
+    text = json.dumps(schema_of(kind), indent=1, allow_nan=False)
     if output is None:
         print(text)
         return

@@ -236,7 +236,7 @@ def _give(fields: dict[str, Any], name: str, value: Any, where: str) -> None:
 def _kind_of(text: str, kinds: Mapping[str, type[Any]]) -> str:
     """Tag of the kind with which a text begins; empty if it begins with none."""
     words = text.strip().replace("_", " ")
-    return next((tag for tag in kinds if words.startswith(tag.replace("_", " "))), "")
+    return next((tag for tag in kinds if re.match(rf"{tag.replace('_', ' ')}\b", words)), "")
 
 
 def terrain_overrides(text: str) -> dict[str, str]:

@@ -85,12 +85,13 @@ def run(
             should_stop=lambda: bool(stopped),
             shard=part,
         )
-    survived = sum(bool(value) for value in table["survived"].to_pylist())
-    console.print(f"{output}: {table.num_rows} of {part.size(loaded)} runs, {survived} survived", soft_wrap=True)
-    if table.num_rows < part.size(loaded):
+    rows = [row for row in table.select([ROW, "end", "survived"]).to_pylist() if part.has(row[ROW])]
+    survived = sum(bool(row["survived"]) for row in rows)
+    console.print(f"{output}: {len(rows)} of {part.size(loaded)} runs, {survived} survived", soft_wrap=True)
+    if len(rows) < part.size(loaded):
         console.print("interrupted; the same command resumes")
         raise typer.Exit(INTERRUPTED)
-    failures = [row for row in table.select([ROW, "end"]).to_pylist() if not has_result(row["end"])]
+    failures = [row for row in rows if not has_result(row["end"])]
     if failures:
         first = failures[0]
         console.print(f"{len(failures)} without a result; the first, row {first[ROW]}: {first['end']}", soft_wrap=True)

@@ -16,6 +16,7 @@ from humanwalk.measures.summary_rows import EXTERNAL_SUPPORT
 from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import Run
 from humanwalk.scenario import dump_scenario
+from humanwalk.systems.push_source import FORCE_COLUMNS
 
 
 def write_csv(run: Run, folder: Path) -> list[Path]:
@@ -64,9 +65,10 @@ def forces_left_out(run: Run, to: str) -> tuple[str, ...]:
     """Forces on the body that a format with the forces on the feet does not contain."""
     if to not in NEED_PHYSICS:
         return ()
+    has_pushes = set(FORCE_COLUMNS) <= set(run.signals.column_names)
     acting = {
         EXTERNAL_SUPPORT: run.summary["external_support"],
-        "pushes": matrix(run.signals, [f"push.force_{axis}_N" for axis in "xyz"]).any(),
+        "pushes": has_pushes and matrix(run.signals, FORCE_COLUMNS).any(),
     }
     return tuple(name for name, acts in acting.items() if acts)
 

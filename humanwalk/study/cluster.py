@@ -115,7 +115,7 @@ def remote_client(address: str) -> Iterator[Client]:
 
 
 MIN_MEMORY = 500_000_000
-"""Least memory of a SLURM job [bytes]: a worker with Drake has 300 MB."""
+"""Least memory of a worker [bytes]: with Drake it starts with 300 MB."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class SlurmParameters:
     """Cores of a job, and its number of worker processes."""
 
     memory: str = "4GB"
-    """Memory of a job; a worker has an equal share, and needs 1 GB."""
+    """Memory of a job; each of its `cores` workers has an equal share, of 500 MB or more."""
 
     walltime: str = "01:00:00"
     """Time limit of a job; a run that it ends is repeated by another job."""
@@ -150,15 +150,15 @@ class SlurmParameters:
     """Lines of shell before the workers start, like `source ~/humanwalk/.venv/bin/activate`."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for an amount of memory that is none."""
+        """Raise ParameterError for an amount of memory that is none, or too little for the workers."""
         try:
-            enough = parse_bytes(self.memory) >= MIN_MEMORY
+            enough = parse_bytes(self.memory) >= self.cores * MIN_MEMORY
         except (ValueError, OverflowError):
             enough = False
         if not enough:
             raise ParameterError(
-                f"memory: {printable(self.memory, 40)} is not enough for a worker; allowed: from 500MB; write it like "
-                "4GB"
+                f"memory: {printable(self.memory, 40)} is not enough for cores: {self.cores}; allowed: 500MB for each, "
+                f"here from {self.cores * MIN_MEMORY // 10**6}MB; write it like 4GB, or fewer cores"
             )
 
 

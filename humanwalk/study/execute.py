@@ -213,7 +213,7 @@ def run_study(
         study: what to simulate.
         folder: of the table; a new one, or that of the same study, which resumes.
         client: of the Dask cluster; see `humanwalk.study.cluster`.
-        on_progress: called with the number of finished rows, of all rows, and each new row.
+        on_progress: called with the number of finished rows of the shard, of all its rows, and each new row.
         should_stop: asked several times a second; true ends the study, which can be resumed.
         function: what a worker does with a job.
         shard: the part of the study to simulate; see `humanwalk.study.table.join`.
@@ -228,7 +228,7 @@ def run_study(
 
         def add(job: Job, row: Row) -> None:
             journal.append(job.index, row)
-            on_progress(len(journal.done), shard.size(study), row)
+            on_progress(sum(map(shard.has, journal.done)), shard.size(study), row)
 
         try:
             run_jobs(client, function, list_jobs(study, journal, shard), add, should_stop)

@@ -195,6 +195,8 @@ def test_every_piece_can_be_written(tag: str) -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
+        ("roughly 3 cm then flat", "no such kind"),
+        ("stairsdown 17 cm then flat", "no such kind"),
         ("stairs then stares", "no such kind; allowed: .* did you mean stairs"),
         ("obstacle high 20 cm", "high 20 cm is not FIELD VALUE of obstacle, which has .*height"),
         ("stairs sideways", "sideways is not FIELD VALUE of stairs, which has .*direction"),

@@ -29,6 +29,7 @@ from humanwalk.quantity import ParameterError
 from humanwalk.run.folder import SIGNALS, Run
 from humanwalk.run.outcome import Outcome
 from humanwalk.sides import Side
+from humanwalk.systems.push_source import FORCE_COLUMNS
 from humanwalk.terrain import Plane
 
 
@@ -348,3 +349,9 @@ def test_csv_has_no_cell_that_a_spreadsheet_executes(run: Run, signals: pa.Table
 def test_forces_that_a_format_does_not_contain_are_named(run: Run, to: str) -> None:
     """The body of the made-up run is held upright and pushed."""
     assert forces_left_out(run, to) == (("EXTERNAL SUPPORT", "pushes") if to in ("opensim", "c3d") else ())
+
+
+def test_pushes_that_were_not_recorded_are_not_named(run: Run) -> None:
+    unpushed = Run(run.path)
+    unpushed.__dict__["signals"] = run.signals.drop_columns(list(FORCE_COLUMNS))
+    assert forces_left_out(unpushed, "opensim") == ("EXTERNAL SUPPORT",)

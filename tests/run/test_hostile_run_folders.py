@@ -97,6 +97,13 @@ def test_invalid_summary_is_refused(folder: Path, content: bytes) -> None:
     assert SUMMARY in refusal(read, folder)
 
 
+@pytest.mark.parametrize("name", ["peak_torque_N_m", "saturated_share", "tracking_error_rad"])
+def test_summary_without_joints_is_refused(folder: Path, name: str) -> None:
+    summary = json.loads((folder / SUMMARY).read_text())
+    (folder / SUMMARY).write_text(json.dumps(summary | {name: {}}))
+    assert f"{name} does not have the joints" in refusal(read, folder)
+
+
 def test_summary_with_a_byte_order_mark_is_read(folder: Path) -> None:
     (folder / SUMMARY).write_bytes(b"\xef\xbb\xbf" + (folder / SUMMARY).read_bytes())
     assert is_read(folder)

@@ -50,6 +50,7 @@ def test_slurm_jobs_are_the_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         ("cores: 0", "cores: 0 is out of range"),
         ("core: 1", "did you mean cores"),
         ("memory: much", "memory: much is not enough"),
+        ("cores: 64\nmemory: 4GB", "memory: 4GB is not enough for cores: 64; allowed: .* from 32000MB"),
         ("memory: 1e999GB", "memory: 1e999GB is not enough"),
     ],
 )

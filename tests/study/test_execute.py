@@ -123,6 +123,22 @@ def test_shards_have_every_point_once(count: int, points: int) -> None:
         assert shard.size(study) == sum(shard.has(index) for index in range(points))
 
 
+def test_progress_of_a_shard_counts_its_own_rows(tmp_path: Path) -> None:
+    study = parse_study("factors: {seed: {seeds: {count: 5}}}")
+    counts: list[tuple[int, int]] = []
+    with local_client(1) as client:
+        for shard in (Shard(1, 2), Shard(2, 2)):
+            run_study(
+                study,
+                tmp_path,
+                client,
+                lambda done, total, row: counts.append((done, total)),
+                function=lambda job: {"end": "failed"},
+                shard=shard,
+            )
+    assert counts == [(1, 3), (2, 3), (3, 3), (1, 2), (2, 2)]
+
+
 @pytest.mark.parametrize("text", ["", "2", "0/3", "4/3", "1/0", "-1/3", "1/3/3", "1.0/3", "1/" + "9" * 5000])
 def test_text_that_is_no_shard_is_refused(text: str) -> None:
     with pytest.raises(ParameterError, match="not a part of a study"):
