@@ -134,13 +134,9 @@ after its others: both angles of the pelvic plane are those of the pelvis frame 
 
 MOMENTS = {
     f"{joint} moment": Curve(
-        positive, "N m/kg", f"{joint}_{quantity}_moment_Nmm_per_kg", partial(_moment, joint), 1e-3, moment_scale
+        sense, "N m/kg", f"{joint}_{sense}_moment_Nmm_per_kg", partial(_moment, joint), 1e-3, moment_scale
     )
-    for joint, positive, quantity in (
-        ("hip", "extensor", "extensor"),
-        ("knee", "extensor", "extensor"),
-        ("ankle", "plantarflexor", "plantarflexor"),
-    )
+    for joint, sense in (("hip", "extensor"), ("knee", "extensor"), ("ankle", "plantarflexor"))
 }
 """Internal moments of the sagittal joints by name."""
 

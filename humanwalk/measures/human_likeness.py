@@ -5,7 +5,7 @@ are scaled to its leg length. Other measures have human values where a source is
 (`humanwalk.measures.human_ranges`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,15 +105,15 @@ class Comparison:
     @property
     def score(self) -> float:
         """Share of the cycle within one standard deviation of people's mean, averaged over SCORED: 0 to 1."""
-        return self._over(SCORED, "inside")
+        return self._over_scored("inside")
 
     @property
     def distance(self) -> float:
         """Distance from people's mean, averaged over the cycle and SCORED [standard deviations between people]."""
-        return self._over(SCORED, "distance")
+        return self._over_scored("distance")
 
-    def _over(self, curves: Sequence[str], name: str) -> float:
-        return float(np.mean([self.mean(curve, name) for curve in curves]))
+    def _over_scored(self, name: str) -> float:
+        return float(np.mean([self.mean(curve, name) for curve in SCORED]))
 
 
 def compare(signals: pa.Table, scenario: Scenario) -> Comparison:

@@ -29,6 +29,9 @@ UNITS = {
     "BW": "BW",
 }
 """Units by how the name of a signal or measure ends."""
+ENDINGS = {unit: ending for ending, unit in UNITS.items()}
+"""Ends of names, by unit."""
+
 UNIT = re.compile(f"_({'|'.join(UNITS)})$")
 
 

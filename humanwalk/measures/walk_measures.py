@@ -39,7 +39,7 @@ from humanwalk.measures.human_ranges import (
     people_steps,
 )
 from humanwalk.measures.path import Directions, distance_along, path_directions
-from humanwalk.measures.signals import TIME, UNITS
+from humanwalk.measures.signals import ENDINGS, TIME
 from humanwalk.measures.steady import steady_rows
 from humanwalk.numerics import Array
 from humanwalk.quantity import GRAVITY
@@ -165,8 +165,8 @@ class MeasureKind:
     @property
     def column(self) -> str:
         """Name in tables, with the unit: CoP_backward_m."""
-        endings = {unit: f"_{ending}" for ending, unit in UNITS.items()}
-        return re.sub(r"\W+", "_", self.name) + endings.get(self.unit, "")
+        ending = f"_{ENDINGS[self.unit]}" if self.unit in ENDINGS else ""
+        return re.sub(r"\W+", "_", self.name) + ending
 
 
 def com_excursions(signals: pa.Table, foot: FootEvents, axis: str) -> Array:

@@ -61,8 +61,8 @@ def signals_hash(signals: pa.Table) -> str:
 
 
 def file_hash(path: str) -> str | None:
-    """SHA-256 of a file's bytes; None without a path, or if it cannot be read."""
+    """SHA-256 of a file's bytes; None if it cannot be read."""
     try:
-        return hashlib.sha256(read_regular(Path(path), MAX_FOLLOWED_BYTES)).hexdigest() if path else None
+        return hashlib.sha256(read_regular(Path(path), MAX_FOLLOWED_BYTES)).hexdigest()
     except ParameterError:
         return None

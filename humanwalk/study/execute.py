@@ -108,7 +108,7 @@ def run_jobs[J: Indexed](
                 futures.pop(str(future.key)).release()
             for key, row in rows.items():
                 on_row(waiting.pop(key), row)
-    except (OSError, TimeoutError) as error:
+    except OSError as error:
         raise _lost(client, error) from None
     finally:
         for future in futures.values():
@@ -143,7 +143,9 @@ def _rows_of(client: Client, futures: list[Future[Any]]) -> dict[str, Row]:
     good = [future for future in futures if future.status != "error"]
     rows = dict(zip((str(future.key) for future in good), client.gather(good), strict=True)) if good else {}
     return {
-        str(future.key): rows[str(future.key)] if future in good else _failure(future.exception()) for future in futures
+        key: rows[key] if key in rows else _failure(future.exception())
+        for future in futures
+        if (key := str(future.key))
     }
 
 

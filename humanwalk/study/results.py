@@ -16,7 +16,7 @@ from humanwalk.measures.signals import UNIT, unit_of
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import ParameterError, near_names, numbers_of, printable
 from humanwalk.study.row import has_result, run_columns
-from humanwalk.study.statistics import FactorArray, factor_array, is_numeric
+from humanwalk.study.statistics import FactorArray, factor_array, is_numeric, varies
 from humanwalk.study.study import Study
 from humanwalk.study.table import ROW, read_study, read_table
 
@@ -136,8 +136,7 @@ class Results:
     def varies(self, name: str) -> bool:
         """Whether a measure differs between rows by more than rounding."""
         values = self.measure(name)
-        values = values[np.isfinite(values)]
-        return bool(values.size and np.ptp(values) > 1e-9 * np.abs(values).max())
+        return varies(values[np.isfinite(values)])
 
     @cached_property
     def _units(self) -> dict[str, str]:

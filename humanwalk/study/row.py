@@ -14,7 +14,7 @@ from humanwalk.body.anatomy import human
 from humanwalk.files import make_folder
 from humanwalk.measures.curves import CURVES
 from humanwalk.measures.human_likeness import Comparison, compare
-from humanwalk.measures.signals import UNITS
+from humanwalk.measures.signals import ENDINGS
 from humanwalk.measures.summary import PACKAGES, Summary
 from humanwalk.measures.walk_measures import MEASURES
 from humanwalk.quantity import ParameterError, printable
@@ -121,7 +121,7 @@ def _of_curve(comparison: Comparison, curve: str) -> dict[str, float]:
 
 def _rms(curve: str) -> str:
     """Name of the rms with the unit of a curve: rms_deg, rms_N_m_kg or rms_W_kg."""
-    return "rms_" + next(ending for ending, unit in UNITS.items() if unit == CURVES[curve].unit)
+    return "rms_" + ENDINGS[CURVES[curve].unit]
 
 
 def _key(curve: str) -> str:

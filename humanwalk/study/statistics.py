@@ -156,6 +156,11 @@ class Effect:
         return self.p_value < SIGNIFICANCE
 
 
+def varies(values: Array) -> bool:
+    """Whether finite values differ by more than rounding, which alone makes a constant vary."""
+    return bool(values.size and np.ptp(values) > 1e-9 * np.abs(values).max())
+
+
 def ranked_effects(factors: Mapping[str, FactorArray], measure: Array) -> list[Effect]:
     """Effects of factors on a measure, the greatest first.
 
@@ -174,8 +179,7 @@ def ranked_effects(factors: Mapping[str, FactorArray], measure: Array) -> list[E
     """
     finite = np.flatnonzero(np.isfinite(measure))
     y = measure[finite]
-    # Rounding alone makes a constant vary.
-    if y.size < 3 or np.ptp(y) <= 1e-12 * np.abs(y).max():
+    if y.size < 3 or not varies(y):
         return []
     effects = (_effect(name, values[finite], y) for name, values in factors.items())
     return sorted((effect for effect in effects if effect is not None), key=lambda effect: -effect.share)

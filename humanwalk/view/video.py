@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from os import cpu_count
 from pathlib import Path
@@ -81,7 +81,7 @@ class VideoParameters:
     height: int = 720
     view: View = "follow"
     begin: float = 0.0
-    end: float | None = field(default=None)
+    end: float | None = None
 
     def __post_init__(self) -> None:
         """Check every value.

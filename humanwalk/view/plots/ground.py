@@ -14,6 +14,7 @@ from humanwalk.body.limbs import LEGS
 from humanwalk.measures.events import CONTACT_ON_N, events_of, stretches
 from humanwalk.measures.orientation import sole_rotation
 from humanwalk.measures.path import fore_aft_force, horizontal, path_directions
+from humanwalk.measures.signals import ENDINGS
 from humanwalk.numerics import Array, Mask
 from humanwalk.quantity import GRAVITY
 from humanwalk.run.folder import Run
@@ -94,7 +95,7 @@ def center_of_pressure(run: Run) -> Figure | None:
 def support(run: Run, what: Literal["force", "torque"]) -> Figure | None:
     """Force [N] or torque [N m] of the support on the pelvis in the world; None for a run without support."""
     unit, names = {"force": ("N", ("forward", "left", "up")), "torque": ("N m", ("roll", "pitch", "yaw"))}[what]
-    ending = unit.replace(" ", "_")
+    ending = ENDINGS[unit]
     rms: float | None = run.summary[f"support_{what}_rms_{ending}"]  # type: ignore[literal-required]
     columns = [f"support.{what}_{axis}_{ending}" for axis in "xyz"]
     recorded = set(columns) <= set(run.signals.column_names)
