@@ -11,7 +11,6 @@ import numpy as np
 
 from humanwalk.body import SIDES
 from humanwalk.body.limbs import LEGS
-from humanwalk.body.pelvic_plane import PELVIC_TILT
 from humanwalk.body.subject import Subject
 from humanwalk.motion.gait_curves import normative_curves
 
@@ -23,7 +22,7 @@ WALK_RATIO = 0.36
 
 
 HIP_HEIGHT = Subject().skeleton.hip_height
-CURVES = normative_curves(HIP_HEIGHT, PELVIC_TILT)
+CURVES = normative_curves(HIP_HEIGHT)
 
 
 def write(path: Path, speed: float, step: float, duration: float) -> None:
