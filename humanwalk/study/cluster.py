@@ -129,7 +129,7 @@ class SlurmParameters:
     """Cores of a job, and its number of worker processes."""
 
     memory: str = "4GB"
-    """Memory of a job; each of its `cores` workers has an equal share, of 500 MB or more."""
+    """Memory of a job; its workers share it equally, and each needs at least 500 MB."""
 
     walltime: str = "01:00:00"
     """Time limit of a job; a run that it ends is repeated by another job."""
@@ -150,7 +150,7 @@ class SlurmParameters:
     """Lines of shell before the workers start, like `source ~/humanwalk/.venv/bin/activate`."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for an amount of memory that is none, or too little for the workers."""
+        """Raise ParameterError if `memory` is not an amount of memory, or is too small for the workers."""
         try:
             enough = parse_bytes(self.memory) >= self.cores * MIN_MEMORY
         except (ValueError, OverflowError):
